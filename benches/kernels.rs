@@ -13,7 +13,7 @@ use stridor::linalg::factor::SymbolicFactor;
 use stridor::linalg::sparse::add_scaled;
 use stridor::linalg::unsymmetric::spectrum;
 use stridor::mesh::Cell;
-use stridor::structure::{Material, Model, RayleighDamping, ShellPart, assemble};
+use stridor::structure::{Material, Model, Part, RayleighDamping, Shell, assemble};
 
 /// Seconds of `work`, and what it gives.
 fn timed<T>(work: impl FnOnce() -> T) -> (f64, T) {
@@ -41,12 +41,12 @@ fn plate(n: usize) -> Model {
         rayleigh: RayleighDamping::default(),
     };
     let faces = (0..n).flat_map(|i| (0..n).flat_map(move |j| cell(i, j))).collect();
-    let part = ShellPart {
-        bending_only: true,
-        rotary_inertia: false,
-        ..ShellPart::new("plate", faces, material, 0.01)
-    };
-    Model { nodes, shells: vec![part], ..Model::default() }
+    let part = Part::new(
+        "plate",
+        faces,
+        Shell { bending_only: true, rotary_inertia: false, ..Shell::new(material, 0.01) },
+    );
+    Model { nodes, parts: vec![part], ..Model::default() }
 }
 
 /// Prints the times of one size; the seconds of the real modes and the degrees of freedom.

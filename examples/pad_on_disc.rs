@@ -8,7 +8,7 @@ use stridor::contact::{
 use stridor::equilibrium::steady_sliding;
 use stridor::modal::{ModesWanted, real_modes};
 use stridor::stability::complex_eigenvalues;
-use stridor::structure::{Material, Model, RayleighDamping, ShellPart, Spring, Support, assemble};
+use stridor::structure::{Material, Model, Part, RayleighDamping, Shell, Spring, Support, assemble};
 use stridor::system::{Closing, ContactPair, System};
 
 /// μ(v) = 0.6 − 0.2 tanh(v/(1 m/s)): falls with speed, to 0.4.
@@ -35,8 +35,8 @@ fn main() -> stridor::error::Result<()> {
     };
     let lining =
         Material { youngs_modulus: 8e9, poissons_ratio: 0.25, density: 2500.0, ..Material::default() };
-    let disc = ShellPart::new("disc", mesh.faces("disc")?, steel, 1e-3);
-    let pad = ShellPart::new("pad", mesh.faces("pad")?, lining, 5e-3);
+    let disc = Part::new("disc", mesh.faces("disc")?, Shell::new(steel, 1e-3));
+    let pad = Part::new("pad", mesh.faces("pad")?, Shell::new(lining, 5e-3));
     let pad_nodes = mesh.region_nodes(mesh.require("pad", 2)?);
     let stiffness = 20e6 / pad_nodes.len() as f64;
     let held = |node: &usize, direction| Spring {
@@ -52,13 +52,13 @@ fn main() -> stridor::error::Result<()> {
         springs: pad_nodes.iter().flat_map(|node| axes.map(|direction| held(node, direction))).collect(),
         supports: vec![Support { nodes: mesh.region_nodes(mesh.require("hub", 1)?), held: [true; 6] }],
         nodes: mesh.nodes,
-        shells: vec![disc, pad],
+        parts: vec![disc, pad],
         ..Model::default()
     };
     let assembled = assemble(&model)?;
-    let [disc, pad] = [&model.shells[0], &model.shells[1]];
+    let [disc, pad] = [&model.parts[0], &model.parts[1]];
     let surfaces =
-        Surfaces::new("face", &model.nodes, [pad, disc], ContactSide::Face(&pad.faces), [0.0, 1.0, 0.0]);
+        Surfaces::new("face", &model.nodes, [pad, disc], ContactSide::Face(&pad.cells), [0.0, 1.0, 0.0]);
     let pair = ContactPair {
         name: "face".into(),
         points: pair_surfaces(&surfaces, &|entries| assembled.dofs.reduce(entries))?,

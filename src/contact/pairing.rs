@@ -1,11 +1,11 @@
 //! Contact points from the geometry of two plates.
 
-use super::projection::{FaceGrid, Foot, Part, Vector, add, area_vector, cross, dot, scale, subtract};
+use super::projection::{FaceGrid, Foot, FootShare, Vector, add, area_vector, cross, dot, scale, subtract};
 use crate::error::{Error, Fault, Faults, Result};
 use crate::linalg::SparseVector;
 use crate::mesh::Cell;
 use crate::numbers::{components, given};
-use crate::structure::ShellPart;
+use crate::structure::Part;
 use crate::structure::elements::{WeightedTriangle, split_face};
 use crate::system::ContactPoint;
 use std::collections::BTreeSet;
@@ -21,11 +21,11 @@ pub struct Surfaces<'a> {
     /// Coordinates of all nodes \[m\].
     pub nodes: &'a [[f64; 3]],
     /// The plate whose nodes touch.
-    pub body: &'a ShellPart,
+    pub body: &'a Part,
     /// Which of its nodes may touch, and how.
     pub side: ContactSide<'a>,
     /// The plate whose faces are touched.
-    pub counter: &'a ShellPart,
+    pub counter: &'a Part,
     /// The direction in which the counter-body slides past the body; its part across n is t₁.
     pub sliding_direction: [f64; 3],
     /// How many of the points are kept.
@@ -39,7 +39,7 @@ impl<'a> Surfaces<'a> {
     pub fn new(
         name: &'a str,
         nodes: &'a [[f64; 3]],
-        [body, counter]: [&'a ShellPart; 2],
+        [body, counter]: [&'a Part; 2],
         side: ContactSide<'a>,
         sliding_direction: [f64; 3],
     ) -> Self {
@@ -94,7 +94,7 @@ pub fn pair_surfaces(surfaces: &Surfaces<'_>, reduce: &Reduce<'_>) -> Result<Vec
     let touching = touching_nodes(surfaces, &place("body"))?;
     let mean = touching.iter().fold([0.0; 3], |sum, t| add(sum, surfaces.nodes[t.node]));
     let mean = scale(1.0 / touching.len() as f64, mean);
-    let plate = FaceGrid::new(surfaces.nodes, &surfaces.counter.faces, mean).ok_or_else(|| {
+    let plate = FaceGrid::new(surfaces.nodes, &surfaces.counter.cells, mean).ok_or_else(|| {
         let found = "faces without area or turned against each other";
         Error::input(Fault::new(
             place("counter"),
@@ -143,7 +143,7 @@ pub fn pair_surfaces(surfaces: &Surfaces<'_>, reduce: &Reduce<'_>) -> Result<Vec
         let direction = |w: Vector, sign: f64| {
             let mut terms = Vec::with_capacity(24);
             on_body(candidate, scale(sign, w), &mut terms);
-            on_counter((foot, &moved), 0.5 * surfaces.counter.thickness, scale(-sign, w), &mut terms);
+            on_counter((foot, &moved), 0.5 * surfaces.counter.thickness(), scale(-sign, w), &mut terms);
             reduce(&terms)
         };
         points.push(ContactPoint {
@@ -204,7 +204,7 @@ fn touching_nodes(surfaces: &Surfaces<'_>, place: &str) -> Result<Vec<Touching>>
     }
     let mut normals = vec![[0.0; 3]; n];
     let mut on_part = vec![false; n];
-    for triangle in surfaces.body.faces.iter().flat_map(split_face) {
+    for triangle in surfaces.body.cells.iter().flat_map(split_face) {
         let area = area_of(&triangle);
         for node in triangle.nodes {
             normals[node] = add(normals[node], area);
@@ -236,12 +236,12 @@ fn touching_nodes(surfaces: &Surfaces<'_>, place: &str) -> Result<Vec<Touching>>
 }
 
 fn candidates(surfaces: &Surfaces<'_>, plate: &FaceGrid, touching: &[Touching]) -> Vec<Candidate> {
-    let half = 0.5 * surfaces.body.thickness;
+    let half = 0.5 * surfaces.body.thickness();
     let place = |t: &Touching, offset: Vector, weight: f64| {
         let position = add(surfaces.nodes[t.node], offset);
         let foot = plate.foot(position);
         let height = foot.as_ref().map_or_else(|| plate.height_over_plane(position), |f| f.height);
-        let gap = height - 0.5 * surfaces.counter.thickness;
+        let gap = height - 0.5 * surfaces.counter.thickness();
         Candidate { node: t.node, offset, position, weight, gap, foot }
     };
     let mut all = Vec::new();
@@ -269,7 +269,7 @@ fn check_nearest(surfaces: &Surfaces<'_>, plate: &FaceGrid, all: &[Candidate]) -
     let nearest = over.filter(|over| over.gap <= nearest.gap + plate.tolerance()).unwrap_or(nearest);
     let (counter, body) = (&surfaces.counter.name, &surfaces.body);
     let the_nearest = format!("the nearest of {} points of `{}`", all.len(), body.name);
-    let faces = surfaces.counter.faces.len();
+    let faces = surfaces.counter.cells.len();
     let mut faults = Faults::new();
     let mut beside = |what: &str, help: &str| {
         let found = format!("{the_nearest} at {} m, {what} ({faces} faces)", components(nearest.position));
@@ -283,7 +283,8 @@ fn check_nearest(surfaces: &Surfaces<'_>, plate: &FaceGrid, all: &[Candidate]) -
     } else if over.is_none() {
         let help = format!(
             "Its node is over `{counter}`: look at the thickness of `{}`, {} m",
-            body.name, body.thickness
+            body.name,
+            body.thickness()
         );
         beside(&format!("which stands over none of the faces of `{counter}`"), &help);
     }
@@ -311,7 +312,7 @@ fn check_gap(
         );
         faults.push(Fault::new(place(".reach"), found, expected).with_help(help));
     }
-    let thickness = 0.5 * (surfaces.body.thickness + surfaces.counter.thickness);
+    let thickness = 0.5 * (surfaces.body.thickness() + surfaces.counter.thickness());
     if nearest.foot.is_some() && nearest.gap < -thickness {
         let found = format!("the bodies {} m inside each other", given(-nearest.gap));
         let fault = Fault::new(place(""), found, "bodies that just touch");
@@ -358,7 +359,7 @@ struct NodeShare {
 
 /// The displacement of the mid-surface at the foot, by the elements of the counter-body.
 fn at_foot(surfaces: &Surfaces<'_>, foot: &Foot) -> Vec<NodeShare> {
-    let on_face = |part: &Part| {
+    let on_face = |part: &FootShare| {
         let moved = surfaces.counter.displacement_at(surfaces.nodes, part.face, &part.at);
         let share = part.share;
         moved.into_iter().map(move |(node, component, by)| NodeShare { node, component, share, by })

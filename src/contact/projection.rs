@@ -29,7 +29,7 @@ type Face = Vec<(WeightedTriangle, [Vector; 3])>;
 /// therefore stands on both: the foot is their mean, which depends on no order of faces or corners. A quadrilateral
 /// is the mean of its two splittings into triangles.
 pub(super) struct Foot {
-    pub(super) parts: Vec<Part>,
+    pub(super) parts: Vec<FootShare>,
     /// Unit normal, towards the other body.
     pub(super) normal: Vector,
     /// Height over the mid-surface \[m\].
@@ -37,7 +37,7 @@ pub(super) struct Foot {
 }
 
 /// The part of a foot that is on one triangle of a face.
-pub(super) struct Part {
+pub(super) struct FootShare {
     /// Its share of the displacement; the shares of a foot add up to 1.
     pub(super) share: f64,
     /// The face among those of the plate.
@@ -134,7 +134,7 @@ impl FaceGrid {
         let normal = scale(side / square.sqrt(), area);
         let height = dot(subtract(x, corners[0]), normal);
         let at = FacePoint { corners: nodes, barycentric };
-        Some(Foot { parts: vec![Part { share: 1.0, face, at }], normal, height })
+        Some(Foot { parts: vec![FootShare { share: 1.0, face, at }], normal, height })
     }
 }
 
@@ -147,7 +147,7 @@ fn mean(feet: impl Iterator<Item = Foot>) -> Option<Foot> {
         let (normal, height) = (add(sum.normal, foot.normal), sum.height + foot.height);
         Foot { normal, height, ..sum }
     })?;
-    let parts = sum.parts.into_iter().map(|part| Part { share: share * part.share, ..part }).collect();
+    let parts = sum.parts.into_iter().map(|part| FootShare { share: share * part.share, ..part }).collect();
     let normal = scale(1.0 / dot(sum.normal, sum.normal).sqrt(), sum.normal);
     Some(Foot { parts, normal, height: share * sum.height })
 }

@@ -4,7 +4,7 @@ use super::regions::Regions;
 use crate::case::Case;
 use crate::error::{Fault, Faults};
 use crate::linalg::SparseVector;
-use crate::structure::Model;
+use crate::structure::{Model, Part};
 use crate::system::{ContactPair, ContactPoint};
 use std::collections::{BTreeMap, HashMap};
 
@@ -49,7 +49,7 @@ pub(super) fn surfaces_twice(
         let nodes = regions.nodes(&case.contact.get(name)?.body, "").ok()?;
         model.shell_with(&nodes)
     };
-    let thickness = |name: &str| model.shells.iter().find(|s| s.name == name).map_or(0.0, |s| s.thickness);
+    let thickness = |name: &str| model.part(name).map_or(0.0, Part::thickness);
     let surfaces: Vec<(&ContactPair, &str, &str)> = pairs
         .iter()
         .filter_map(|pair| {

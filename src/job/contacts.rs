@@ -147,8 +147,8 @@ pub fn surface_points(
             "lines or faces on one of the case's shells",
         ))
     })?;
-    let counter = model.shells.iter().find(|s| s.name == contact.counter).ok_or_else(|| {
-        let known: Vec<&str> = model.shells.iter().map(|s| s.name.as_str()).collect();
+    let counter = model.part(&contact.counter).filter(|part| part.as_shell().is_some()).ok_or_else(|| {
+        let known: Vec<&str> = model.shells().map(|(part, _)| part.name.as_str()).collect();
         Error::input(Fault::new(
             place("counter"),
             format!("\"{}\"", contact.counter),
@@ -156,7 +156,7 @@ pub fn surface_points(
         ))
     })?;
     let own: BTreeSet<usize> = nodes.iter().copied().collect();
-    let shared = counter.faces.iter().flat_map(|face| face.nodes()).filter(|node| own.contains(node));
+    let shared = counter.cells.iter().flat_map(|face| face.nodes()).filter(|node| own.contains(node));
     let shared: BTreeSet<usize> = shared.copied().collect();
     if let Some(first) = shared.first() {
         let found = format!(
@@ -198,7 +198,7 @@ pub fn surface_points(
         }
     };
     let moved = (stand.travel != 0.0).then(|| {
-        crate::contact::travelled(&model.nodes, &counter.faces, contact.sliding_direction, stand.travel)
+        crate::contact::travelled(&model.nodes, &counter.cells, contact.sliding_direction, stand.travel)
     });
     let surfaces = Surfaces {
         name,
@@ -219,9 +219,9 @@ pub fn surface_points(
 /// Two unit vectors of a pair, for pictures: where the load presses the body, and where the counter-body moves.
 pub fn arrows(contact: &Contact, model: &Model, points: &[ContactPoint]) -> [[f64; 3]; 2] {
     let sliding = Vector3::from(contact.sliding_direction) * contact.sliding_velocity;
-    let press = match (contact.into, model.shells.iter().find(|s| s.name == contact.counter)) {
+    let press = match (contact.into, model.part(&contact.counter)) {
         (Some(into), _) => Vector3::from(into),
-        (None, Some(counter)) => counter.faces.first().map_or(Vector3::zeros(), |face| {
+        (None, Some(counter)) => counter.cells.first().map_or(Vector3::zeros(), |face| {
             let at = |k: usize| Vector3::from(model.nodes[face.nodes()[k]]);
             let normal = (at(1) - at(0)).cross(&(at(2) - at(0)));
             let above: f64 = points.iter().map(|p| (Vector3::from(p.position) - at(0)).dot(&normal)).sum();

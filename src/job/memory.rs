@@ -211,11 +211,11 @@ impl ProblemSize {
 /// About how many modes the plates of a model have below a frequency, Weyl's N = k² A/(4π) with the wavenumber k of bending
 /// by the theory of each, √(ω √(ρh/D)) of a thin plate.
 fn modes_below(model: &Model, hz: f64) -> f64 {
-    let part = |part: &crate::structure::ShellPart| {
+    let part = |part: &crate::structure::Part| {
         let k = part.element(&model.nodes).and_then(|element| element.bending_wavenumber(hz)).unwrap_or(0.0);
         k * k * part.area(&model.nodes) / (4.0 * PI)
     };
-    model.shells.iter().map(part).sum()
+    model.shells().map(|(shell, _)| part(shell)).sum()
 }
 
 fn words(bytes: f64) -> String {
@@ -325,12 +325,11 @@ mod tests {
             rayleigh: crate::structure::RayleighDamping::default(),
         };
         let faces = vec![crate::mesh::Cell::quadrilateral([0, 1, 2, 3])];
-        let plate = crate::structure::ShellPart {
-            rotary_inertia: false,
-            ..crate::structure::ShellPart::new("plate", faces, steel, 1e-3)
-        };
+        let shell = crate::structure::Shell::new(steel, 1e-3);
+        let shell = crate::structure::Shell { rotary_inertia: false, ..shell };
+        let plate = crate::structure::Part::new("plate", faces, shell);
         let nodes = vec![[0.0; 3], [0.3, 0.0, 0.0], [0.3, 0.3, 0.0], [0.0, 0.3, 0.0]];
-        let model = Model { nodes, shells: vec![plate], ..Model::default() };
+        let model = Model { nodes, parts: vec![plate], ..Model::default() };
         assert!((modes_below(&model, 1500.0) - 43.0).abs() < 1.0);
     }
 }

@@ -5,7 +5,7 @@ use super::regions::Regions;
 use crate::case::{Case, ModesAnalysis};
 use crate::error::{Fault, Faults, Result};
 use crate::mesh::Cell;
-use crate::structure::{BarPart, Model, PointMass, ShellPart, Spring, Support};
+use crate::structure::{Bar, Model, Part, PointMass, Shell, Spring, Support};
 
 /// The structure of the whole case.
 ///
@@ -16,22 +16,19 @@ pub fn whole_model(case: &Case, regions: &Regions) -> Result<Model> {
     let mut model = Model { nodes: regions.mesh.nodes.clone(), ..Model::default() };
     for (name, shell) in &case.shell {
         let faces = faults.take(regions.elements(name, 2, &format!("`shell.{name}`")));
-        model.shells.push(ShellPart {
+        let plate = Shell {
             theory: shell.theory,
             bending_only: shell.bending_only,
             rotary_inertia: shell.rotary_inertia,
-            ..ShellPart::new(name, faces.unwrap_or_default(), case.material[&shell.material], shell.thickness)
-        });
+            ..Shell::new(case.material[&shell.material], shell.thickness)
+        };
+        model.parts.push(Part::new(name, faces.unwrap_or_default(), plate));
     }
     for (name, bar) in &case.bar {
         let lines = faults.take(regions.elements(name, 1, &format!("`bar.{name}`")));
-        model.bars.push(BarPart {
-            name: name.clone(),
-            elements: lines.unwrap_or_default().iter().filter_map(Cell::ends).collect(),
-            material: case.material[&bar.material],
-            section: bar.profile.section(),
-            orientation: bar.orientation,
-        });
+        let (material, section) = (case.material[&bar.material], bar.profile.section());
+        let bar = Bar { material, section, orientation: bar.orientation };
+        model.parts.push(Part::new(name, lines.unwrap_or_default(), bar));
     }
     for (name, mass) in &case.mass {
         for node in faults.take(regions.nodes(&mass.on, &format!("`mass.{name}.on`"))).unwrap_or_default() {
@@ -78,8 +75,7 @@ pub fn part_model(
     let wanted = |part: &str| analysis.parts.is_empty() || analysis.parts.iter().any(|p| p == part);
     let mut model = Model {
         nodes: whole.nodes.clone(),
-        shells: whole.shells.iter().filter(|s| wanted(&s.name)).cloned().collect(),
-        bars: whole.bars.iter().filter(|b| wanted(&b.name)).cloned().collect(),
+        parts: whole.parts.iter().filter(|part| wanted(&part.name)).cloned().collect(),
         masses: whole.masses.clone(),
         ..Model::default()
     };
@@ -90,12 +86,7 @@ pub fn part_model(
     }
     let clamp = regions.nodes_of(&analysis.clamp, &format!("`modes.{name}.clamp`"), &mut faults);
     let mut used = vec![!case.point.is_empty() && analysis.parts.is_empty(); model.nodes.len()];
-    for part in &model.shells {
-        part.faces.iter().flat_map(Cell::nodes).for_each(|n| used[*n] = true);
-    }
-    for part in &model.bars {
-        part.elements.iter().flatten().for_each(|n| used[*n] = true);
-    }
+    model.parts.iter().flat_map(|part| &part.cells).flat_map(Cell::nodes).for_each(|n| used[*n] = true);
     // What hangs on nodes of other parts stays out; so does a rigid body whose clamped followers already hold it.
     model.masses.retain(|mass| used[mass.node]);
     model.springs.retain(|spring| used[spring.node] && spring.other.is_none_or(|n| used[n]));

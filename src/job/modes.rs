@@ -91,7 +91,7 @@ pub fn wanted(analysis: &ModesAnalysis, n_dofs: usize) -> ModesWanted {
 /// Whether an analysis is of the whole structure, held as the case holds it, without contact.
 pub fn of_the_whole(prepared: &Prepared, analysis: &ModesAnalysis) -> bool {
     let model = &prepared.model;
-    let mut parts = model.shells.iter().map(|s| &s.name).chain(model.bars.iter().map(|b| &b.name));
+    let mut parts = model.parts.iter().map(|part| &part.name);
     analysis.contact == ContactState::Open
         && !analysis.free
         && analysis.clamp.is_empty()
@@ -165,22 +165,13 @@ fn given_below(case: &Case, modes: &RealModes, below: f64) -> modal::GivenRatios
 
 /// The part with the largest share of the kinetic energy of each mode.
 fn moving_parts(prepared: &Prepared, modes: &RealModes, assembled: &Assembled) -> Vec<Option<String>> {
-    let parts: Vec<(&str, Vec<usize>)> = prepared
-        .model
-        .shells
-        .iter()
-        .map(|s| (s.name.as_str(), s.faces.iter().flat_map(|f| f.nodes()).copied().collect()))
-        .chain(prepared.model.bars.iter().map(|b| (b.name.as_str(), b.elements.concat())))
-        .collect();
+    let parts = &prepared.model.parts;
     if parts.is_empty() {
         return vec![None; modes.len()];
     }
     let mut owner = vec![Vec::new(); assembled.dofs.n_dofs()];
-    for (p, (_, nodes)) in parts.iter().enumerate() {
-        let mut nodes = nodes.clone();
-        nodes.sort_unstable();
-        nodes.dedup();
-        for node in nodes {
+    for (p, part) in parts.iter().enumerate() {
+        for node in part.nodes() {
             for dof in 0..6 {
                 for (free, _) in assembled.dofs.terms(node, dof) {
                     if owner[*free].last() != Some(&p) {
@@ -198,8 +189,8 @@ fn moving_parts(prepared: &Prepared, modes: &RealModes, assembled: &Assembled) -
                 let share = modes.shapes[(i, k)] * momentum[(i, k)] / owners.len().max(1) as f64;
                 owners.iter().for_each(|p| energy[*p] += share);
             }
-            let names = parts.iter().map(|(name, _)| *name).zip(energy);
-            names.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(name, _)| name.to_string())
+            let names = parts.iter().map(|part| &part.name).zip(energy);
+            names.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(name, _)| name.clone())
         })
         .collect()
 }

@@ -3,7 +3,7 @@
 use super::prepared::Prepared;
 use crate::error::{Error, Fault, Result};
 use crate::linalg::SparseVector;
-use crate::structure::ShellPart;
+use crate::structure::Part;
 
 /// A place whose motion is recorded, or on which a load acts.
 #[derive(Debug, Clone)]
@@ -81,8 +81,8 @@ fn nearest(prepared: &Prepared<'_>, place: [f64; 3]) -> (String, usize) {
     let away = |node: &[f64; 3]| (0..3).map(|k| (node[k] - place[k]).powi(2)).sum::<f64>();
     let nodes = prepared.model.nodes.iter().enumerate();
     let node = nodes.min_by(|a, b| away(a.1).total_cmp(&away(b.1))).map_or(0, |(node, _)| node);
-    let own = |part: &&ShellPart| part.faces.iter().any(|face| face.nodes().contains(&node));
-    let part = prepared.model.shells.iter().find(own);
+    let own = |part: &&Part| part.cells.iter().any(|face| face.nodes().contains(&node));
+    let part = prepared.model.parts.iter().find(own);
     let part = part.map_or(String::new(), |part| format!(" of {}", part.name));
     let far = 1e3 * away(&prepared.model.nodes[node]).sqrt();
     (format!("a node{part}, {far:.1} mm from the place"), node)

@@ -14,7 +14,7 @@ use crate::linalg::Engine;
 use crate::mesh::Mesh;
 use crate::modal::Disc;
 use crate::results::{Geometry, ModelSize};
-use crate::structure::{Assembled, Model, ShellPart, assemble};
+use crate::structure::{Assembled, Model, Part, assemble};
 use crate::system::System;
 use std::sync::Arc;
 
@@ -102,8 +102,7 @@ impl<'a> Prepared<'a> {
         let stiffness = &self.system.structure.stiffness;
         ModelSize {
             nodes: self.model.nodes.len(),
-            elements: self.model.shells.iter().map(|s| s.faces.len()).sum::<usize>()
-                + self.model.bars.iter().map(|b| b.elements.len()).sum::<usize>(),
+            elements: self.model.parts.iter().map(|part| part.cells.len()).sum(),
             dofs: self.system.n_dofs(),
             nonzeros: stiffness.compute_nnz(),
             contact_points: self.system.points().count(),
@@ -118,11 +117,8 @@ impl<'a> Prepared<'a> {
             geometry.part_of.extend(vec![geometry.parts.len() - 1; elements.len()]);
             geometry.elements.extend(elements);
         };
-        for shell in &self.model.shells {
-            add(&shell.name, shell.faces.iter().map(|f| f.nodes().to_vec()).collect());
-        }
-        for bar in &self.model.bars {
-            add(&bar.name, bar.elements.iter().map(|e| e.to_vec()).collect());
+        for part in &self.model.parts {
+            add(&part.name, part.cells.iter().map(|cell| cell.nodes().to_vec()).collect());
         }
         if self.case.matrices.is_some() {
             if self.model.nodes.is_empty() {
@@ -150,17 +146,17 @@ impl<'a> Prepared<'a> {
 
     /// Settings of the solution of steady sliding. A contact pressed deeper than half of the thinnest plate makes no sense.
     pub fn steady_options(&self) -> SteadyOptions {
-        let thinnest = self.model.shells.iter().map(|s| s.thickness).fold(f64::INFINITY, f64::min);
+        let thinnest = self.model.shells().map(|(_, shell)| shell.thickness).fold(f64::INFINITY, f64::min);
         SteadyOptions { penetration_limit: 0.5 * thinnest, ..SteadyOptions::default() }
     }
 
     /// The shell parts that are discs, with their names.
     pub fn discs(&self) -> Vec<(&str, Disc)> {
-        let disc = |part: &ShellPart| {
-            let faces: Vec<&[usize]> = part.faces.iter().map(|face| face.nodes()).collect();
+        let disc = |part: &Part| {
+            let faces: Vec<&[usize]> = part.cells.iter().map(|face| face.nodes()).collect();
             Disc::recognise(&faces, &self.model.nodes)
         };
-        self.model.shells.iter().filter_map(|part| Some((part.name.as_str(), disc(part)?))).collect()
+        self.model.shells().filter_map(|(part, _)| Some((part.name.as_str(), disc(part)?))).collect()
     }
 }
 

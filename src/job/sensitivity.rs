@@ -330,7 +330,7 @@ impl Analysed<'_> {
         use nalgebra::Vector3;
         let model = &self.prepared.model;
         let mut normals = vec![Vector3::<f64>::zeros(); model.nodes.len()];
-        for face in model.shells.iter().flat_map(|shell| &shell.faces) {
+        for face in model.shells().flat_map(|(part, _)| &part.cells) {
             let at = |k: usize| Vector3::from(model.nodes[face.nodes()[k]]);
             let area = (at(1) - at(0)).cross(&(at(2) - at(0)));
             face.nodes().iter().for_each(|node| normals[*node] += area);

@@ -54,8 +54,8 @@ fn track(
         let stand = Stand { travel, touch: Some(touch) };
         surface_points(name, contact, model, &stand).ok().filter(|there| there.len() == points.len())
     };
-    let counter = prepared.model.shells.iter().filter(|s| s.name == contact.counter);
-    let edge = mean_edge(&prepared.model.nodes, counter.flat_map(|s| &s.faces));
+    let counter = prepared.model.part(&contact.counter).into_iter();
+    let edge = mean_edge(&prepared.model.nodes, counter.flat_map(|part| &part.cells));
     let Stations { first, spacing, points } = Stations::new([low, high], edge, at).ok_or_else(|| {
         let found = format!("a way from {low:.4} m to {high:.4} m, which leaves `{}`", contact.counter);
         Error::input(

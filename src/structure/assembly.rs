@@ -219,20 +219,16 @@ mod tests {
         let last = nodes.len();
         nodes.push([1.2, 0.5, 0.2]);
         nodes.push([1.5, 0.5, 0.4]);
-        let plate = |name: &str, faces: Vec<Cell>| ShellPart {
-            theory,
-            ..ShellPart::new(name, faces, material, 2e-3)
-        };
         Model {
             nodes,
-            shells: vec![plate("strip", faces)],
-            bars: vec![BarPart {
-                name: "bar".into(),
-                elements: vec![[last, last + 1]],
-                material,
-                section: Section::round(0.01),
-                orientation: [0.0, 1.0, 0.0],
-            }],
+            parts: vec![
+                Part::new("strip", faces, Shell { theory, ..Shell::new(material, 2e-3) }),
+                Part::new(
+                    "bar",
+                    vec![Cell::line([last, last + 1])],
+                    Bar { material, section: Section::round(0.01), orientation: [0.0, 1.0, 0.0] },
+                ),
+            ],
             masses: vec![PointMass { node: last + 1, mass: 0.3, inertia: [1e-4; 3] }],
             springs: vec![Spring {
                 node: 0,
@@ -307,15 +303,22 @@ mod tests {
     #[test]
     fn every_fault_of_a_model_is_told_at_once() {
         let mut model = strip(2, PlateTheory::Mindlin);
-        model.shells[0].rotary_inertia = false;
-        model.shells[0].thickness = -1e-3;
-        model.shells[0].material.poissons_ratio = 0.5;
-        model.shells[0].material.youngs_modulus = f64::NAN;
-        model.bars[0].material.density = -1.0;
-        model.bars[0].elements.push([3, 3]);
-        model.shells[0].faces.push(Cell::triangle([0, 1, 999]));
-        model.shells[0].faces.push(Cell::triangle([0, 0, 1]));
-        model.shells[0].faces.push(Cell::quadrilateral([0, 2, 1, 5]));
+        let [
+            Part { kind: PartKind::Shell(shell), cells: faces, .. },
+            Part { kind: PartKind::Bar(bar), cells: lines, .. },
+        ] = &mut model.parts[..]
+        else {
+            panic!("a plate and a bar")
+        };
+        shell.rotary_inertia = false;
+        shell.thickness = -1e-3;
+        shell.material.poissons_ratio = 0.5;
+        shell.material.youngs_modulus = f64::NAN;
+        bar.material.density = -1.0;
+        lines.push(Cell::line([3, 3]));
+        faces.push(Cell::triangle([0, 1, 999]));
+        faces.push(Cell::triangle([0, 0, 1]));
+        faces.push(Cell::quadrilateral([0, 2, 1, 5]));
         model.masses[0].mass = f64::INFINITY;
         model.springs[0].direction = [0.0; 3];
         model.supports[0].nodes.push(1000);

@@ -1,12 +1,12 @@
 //! Whether a model can be assembled: every fault at once, before any matrix.
 
 use super::dofs::DofMap;
-use super::elements::{BarElement, FiniteElement, FlatTriangle, split_face, spring_direction};
+use super::elements::{FlatTriangle, split_face, spring_direction};
 use super::material::Material;
-use super::model::{Model, PlateTheory, ShellPart};
+use super::model::{Bar, Model, Part, PartKind, PlateTheory, Shell};
 use super::registry::elements;
 use crate::error::{Fault, Faults, Result};
-use crate::mesh::Cell;
+use crate::mesh::{Cell, made_of};
 use crate::numbers::components;
 use std::collections::{BTreeMap, HashMap};
 
@@ -23,8 +23,7 @@ pub fn check(model: &Model) -> Result<()> {
 pub(super) fn check_model(model: &Model) -> Result<()> {
     let mut faults = Faults::new();
     check_nodes(model, &mut faults);
-    check_shells(model, &mut faults);
-    check_bars(model, &mut faults);
+    check_parts(model, &mut faults);
     shared_elements(model, &mut faults);
     check_masses(model, &mut faults);
     check_springs(model, &mut faults);
@@ -45,72 +44,47 @@ fn check_nodes(model: &Model, faults: &mut Faults) {
     }
 }
 
-/// Plates: material, thickness, theory, faces.
-fn check_shells(model: &Model, faults: &mut Faults) {
+/// Parts: material, section, cells.
+fn check_parts(model: &Model, faults: &mut Faults) {
     let known = |node: &usize| *node < model.nodes.len();
     let sound = |node: &usize| known(node) && model.nodes[*node].iter().all(|x| x.is_finite());
-    for part in &model.shells {
-        let place = format!("`shell.{}`", part.name);
-        check_material(&place, &part.material, faults);
-        positive(&place, "thickness", part.thickness, "m", faults);
-        check_theory(&place, part, faults);
-        let not_faces = part.faces.iter().filter(|f| f.dimension() != 2).count();
-        if not_faces > 0 {
-            let found = format!("{not_faces} elements that are points or lines");
-            faults.push(Fault::new(&place, found, "triangles and quadrilaterals"));
-        }
-        let missing = part.faces.iter().flat_map(|f| f.nodes()).filter(|n| !known(n));
-        missing_nodes(&place, missing, model.nodes.len(), faults);
-        let count = part.faces.len();
-        let shapes: Vec<Option<Shape>> = part
-            .faces
-            .iter()
-            .map(|f| f.nodes().iter().all(sound).then(|| shape(part, &model.nodes, f)))
-            .collect();
-        for (bad, what, expected) in [
-            (Shape::NoArea, "without area", "elements with an area"),
-            (Shape::Folded, "that are re-entrant or folded", "convex quadrilaterals"),
-        ] {
-            let mut found = (0..count).filter(|f| shapes[*f] == Some(bad));
-            if let Some(first) = found.next() {
-                let nodes: Vec<usize> = part.faces[first].nodes().iter().map(|n| n + 1).collect();
-                let number = 1 + found.count();
-                faults.push(
-                    Fault::new(
-                        &place,
-                        format!("{number} elements {what}, the first with nodes {nodes:?}"),
-                        expected,
-                    )
-                    .with_help("Merge coincident nodes or mesh the region again"),
-                );
+    for part in &model.parts {
+        let place = part.place();
+        check_material(&place, part.kind.material(), faults);
+        match &part.kind {
+            PartKind::Shell(shell) => {
+                positive(&place, "thickness", shell.thickness, "m", faults);
+                check_theory(&place, shell, faults);
+            }
+            PartKind::Bar(Bar { section, .. }) => {
+                positive(&place, "area", section.area, "m²", faults);
+                positive(&place, "first second moment", section.inertia_1, "m⁴", faults);
+                positive(&place, "second second moment", section.inertia_2, "m⁴", faults);
+                positive(&place, "torsion constant", section.torsion, "m⁴", faults);
             }
         }
-    }
-}
-
-/// Bars: material, section, ends.
-fn check_bars(model: &Model, faults: &mut Faults) {
-    let known = |node: &usize| *node < model.nodes.len();
-    let sound = |node: &usize| known(node) && model.nodes[*node].iter().all(|x| x.is_finite());
-    for part in &model.bars {
-        let place = format!("`bar.{}`", part.name);
-        check_material(&place, &part.material, faults);
-        positive(&place, "area", part.section.area, "m²", faults);
-        positive(&place, "first second moment", part.section.inertia_1, "m⁴", faults);
-        positive(&place, "second second moment", part.section.inertia_2, "m⁴", faults);
-        positive(&place, "torsion constant", part.section.torsion, "m⁴", faults);
-        let missing = part.elements.iter().flatten().filter(|n| !known(n));
-        missing_nodes(&place, missing, model.nodes.len(), faults);
-        let bad = part
-            .elements
-            .iter()
-            .find(|e| e.iter().all(sound) && BarElement::new(part, &model.nodes, **e).is_degenerate());
-        if let Some([a, b]) = bad {
+        let dimension = part.kind.dimension();
+        let others = part.cells.iter().filter(|cell| cell.dimension() != dimension).count();
+        if others > 0 {
             faults.push(Fault::new(
                 &place,
-                format!("no length or an orientation along it between nodes {} and {}", a + 1, b + 1),
-                "elements with a length, and an orientation that is not along them",
+                format!("{others} cells that are no {}", made_of(dimension)),
+                made_of(dimension),
             ));
+        }
+        let missing = part.cells.iter().flat_map(Cell::nodes).filter(|n| !known(n));
+        missing_nodes(&place, missing, model.nodes.len(), faults);
+        let usable = |cell: &&Cell| cell.dimension() == dimension && cell.nodes().iter().all(sound);
+        let shapes: Vec<(&Cell, Shape)> =
+            part.cells.iter().filter(usable).map(|cell| (cell, shape(part, &model.nodes, cell))).collect();
+        for (bad, what, expected, help) in SHAPES {
+            let mut found = shapes.iter().filter(|(_, shape)| shape == bad);
+            if let Some((first, _)) = found.next() {
+                let nodes: Vec<usize> = first.nodes().iter().map(|n| n + 1).collect();
+                let number = 1 + found.count();
+                let found = format!("{number} elements {what}, the first with nodes {nodes:?}");
+                faults.push(Fault::new(&place, found, *expected).with_help(*help));
+            }
         }
     }
 }
@@ -162,33 +136,68 @@ fn check_ties(model: &Model, faults: &mut Faults) {
     }
 }
 
+/// What is wrong with the shape of a cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Shape {
     Sound,
+    NoLength,
     NoArea,
     Folded,
 }
 
-/// Whether all triangles of a face have an area and look the same way, and the elements of the part can be made of it.
-fn shape(part: &ShellPart, nodes: &[[f64; 3]], face: &Cell) -> Shape {
-    let split = split_face(face);
-    let triangles: Vec<FlatTriangle> =
-        split.iter().filter_map(|t| FlatTriangle::new(&t.nodes.map(|n| nodes[n]))).collect();
-    if triangles.len() < split.len() {
-        return Shape::NoArea;
+/// What is found, what is expected, what to do.
+const SHAPES: &[(Shape, &str, &str, &str)] = &[
+    (
+        Shape::NoLength,
+        "with no length or an orientation along it",
+        "elements with a length, and an orientation that is not along them",
+        "Merge coincident nodes, or give another orientation",
+    ),
+    (
+        Shape::NoArea,
+        "without area",
+        "elements with an area",
+        "Merge coincident nodes or mesh the region again",
+    ),
+    (
+        Shape::Folded,
+        "that are re-entrant or folded",
+        "convex quadrilaterals",
+        "Merge coincident nodes or mesh the region again",
+    ),
+];
+
+/// Whether the elements of the part can be made of a cell: all triangles of a face have an area and look the same way.
+fn shape(part: &Part, nodes: &[[f64; 3]], cell: &Cell) -> Shape {
+    let unusable = || part.elements_on(cell, nodes).iter().any(|e| e.is_degenerate());
+    match part.kind {
+        PartKind::Bar(_) => {
+            if unusable() {
+                Shape::NoLength
+            } else {
+                Shape::Sound
+            }
+        }
+        PartKind::Shell(_) => {
+            let split = split_face(cell);
+            let triangles: Vec<FlatTriangle> =
+                split.iter().filter_map(|t| FlatTriangle::new(&t.nodes.map(|n| nodes[n]))).collect();
+            if triangles.len() < split.len() {
+                return Shape::NoArea;
+            }
+            let normals: Vec<[f64; 3]> = triangles.iter().map(FlatTriangle::normal).collect();
+            let turned = |n: &[f64; 3]| n.iter().zip(normals[0]).map(|(a, b)| a * b).sum::<f64>() <= 0.0;
+            if normals.iter().any(turned) || unusable() { Shape::Folded } else { Shape::Sound }
+        }
     }
-    let normals: Vec<[f64; 3]> = triangles.iter().map(FlatTriangle::normal).collect();
-    let turned = |n: &[f64; 3]| n.iter().zip(normals[0]).map(|(a, b)| a * b).sum::<f64>() <= 0.0;
-    let unusable = || part.elements_on(face, nodes).iter().any(|e| e.is_degenerate());
-    if normals.iter().any(turned) || unusable() { Shape::Folded } else { Shape::Sound }
 }
 
 /// Checks the data that Mindlin's theory needs of a plate.
-fn check_theory(place: &str, part: &ShellPart, faults: &mut Faults) {
-    if let Some(kappa) = part.shear_coefficient {
+fn check_theory(place: &str, shell: &Shell, faults: &mut Faults) {
+    if let Some(kappa) = shell.shear_coefficient {
         positive(place, "shear coefficient", kappa, "1", faults);
     }
-    if part.theory == PlateTheory::Mindlin && !part.rotary_inertia {
+    if shell.theory == PlateTheory::Mindlin && !shell.rotary_inertia {
         let found = "Mindlin's theory without rotary inertia";
         faults.push(
             Fault::new(
@@ -203,14 +212,13 @@ fn check_theory(place: &str, part: &ShellPart, faults: &mut Faults) {
 
 /// Elements that two parts have: their stiffness and mass would count twice.
 fn shared_elements(model: &Model, faults: &mut Faults) {
-    if model.shells.len() + model.bars.len() < 2 {
+    if model.parts.len() < 2 {
         return;
     }
-    let shells = model.shells.iter().flat_map(|part| part.faces.iter().map(|f| (&part.name, f.nodes())));
-    let bars = model.bars.iter().flat_map(|part| part.elements.iter().map(|e| (&part.name, &e[..])));
+    let cells = model.parts.iter().flat_map(|part| part.cells.iter().map(|cell| (&part.name, cell.nodes())));
     let mut owners: HashMap<Vec<usize>, &String> = HashMap::new();
     let mut shared: BTreeMap<[&String; 2], usize> = BTreeMap::new();
-    for (name, nodes) in shells.chain(bars) {
+    for (name, nodes) in cells {
         let mut nodes = nodes.to_vec();
         nodes.sort_unstable();
         let owner = *owners.entry(nodes).or_insert(name);
@@ -285,14 +293,14 @@ mod tests {
     fn an_element_belongs_to_one_part() {
         let plate = |name: &str, faces: &[[usize; 3]]| {
             let faces = faces.iter().map(|nodes| Cell::triangle(*nodes)).collect();
-            ShellPart::new(name, faces, STEEL, 1e-3)
+            Part::new(name, faces, Shell::new(STEEL, 1e-3))
         };
         let nodes = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]];
         let apart = [plate("a", &[[0, 1, 2]]), plate("b", &[[1, 3, 2]])];
-        let model = Model { nodes, shells: apart.to_vec(), ..Model::default() };
+        let model = Model { nodes, parts: apart.to_vec(), ..Model::default() };
         assert!(check(&model).is_ok());
         let shared = [plate("a", &[[0, 1, 2]]), plate("b", &[[1, 3, 2], [2, 0, 1]])];
-        let error = check(&Model { shells: shared.to_vec(), ..model }).unwrap_err().to_string();
+        let error = check(&Model { parts: shared.to_vec(), ..model }).unwrap_err().to_string();
         assert!(error.contains("part `b`: found 1 elements that `a` has, too"), "{error}");
     }
 }

@@ -282,11 +282,12 @@ mod tests {
         let (c, s) = (angle.cos(), angle.sin());
         let nodes =
             [[0.0, 0.0], [0.1, 0.0], [0.1, 0.1], [0.0, 0.1]].map(|[x, y]| [x * c, y, -x * s]).to_vec();
-        let part = ShellPart {
-            bending_only,
-            ..ShellPart::new("plate", vec![Cell::triangle([0, 1, 2]), Cell::triangle([0, 2, 3])], STEEL, 1e-3)
-        };
-        Model { nodes, shells: vec![part], ..Model::default() }
+        let part = Part::new(
+            "plate",
+            vec![Cell::triangle([0, 1, 2]), Cell::triangle([0, 2, 3])],
+            Shell { bending_only, ..Shell::new(STEEL, 1e-3) },
+        );
+        Model { nodes, parts: vec![part], ..Model::default() }
     }
 
     #[test]

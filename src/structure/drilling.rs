@@ -40,7 +40,8 @@ impl Drilling {
             .filter(|(slave, master)| slave != *master)
             .for_each(|(_, m)| leads[*m] = true);
         let mut turned = vec![false; n];
-        model.bars.iter().flat_map(|bar| bar.elements.iter().flatten()).for_each(|node| turned[*node] = true);
+        let others = model.parts.iter().filter(|part| part.as_shell().is_none()).flat_map(|part| &part.cells);
+        others.flat_map(Cell::nodes).for_each(|node| turned[*node] = true);
         for spring in model.springs.iter().filter(|spring| spring.rotational) {
             turned[spring.node] = true;
             spring.other.iter().for_each(|node| turned[*node] = true);
@@ -62,7 +63,7 @@ impl Drilling {
         let bodies: Vec<Option<usize>> = (0..n).map(body).collect();
         // Whether an element joins a node to another of its body, and to one that is none of it.
         let (mut along, mut beyond) = (vec![false; n], vec![false; n]);
-        let faces = model.shells.iter().filter(|part| !part.bending_only).flat_map(|part| &part.faces);
+        let faces = model.shells().filter(|(_, shell)| !shell.bending_only).flat_map(|(part, _)| &part.cells);
         for nodes in faces.map(Cell::nodes) {
             for node in nodes.iter().filter(|node| bodies[**node].is_some()) {
                 for other in nodes.iter().filter(|other| *other != node) {
@@ -103,8 +104,8 @@ fn surface_normals(model: &Model) -> Vec<Option<[f64; 3]>> {
     let mut sums = vec![Vector3::zeros(); model.nodes.len()];
     let mut membrane = vec![false; model.nodes.len()];
     let mut triangles = Vec::new();
-    for part in &model.shells {
-        for triangle in part.faces.iter().flat_map(split_face) {
+    for (part, shell) in model.shells() {
+        for triangle in part.cells.iter().flat_map(split_face) {
             let Some(flat) = FlatTriangle::new(&triangle.nodes.map(|node| model.nodes[node])) else {
                 continue;
             };
@@ -114,7 +115,7 @@ fn surface_normals(model: &Model) -> Vec<Option<[f64; 3]>> {
                 // Parts need not be turned the same way.
                 let sign = if sums[node].dot(&normal) < 0.0 { -1.0 } else { 1.0 };
                 sums[node] += sign * triangle.weight * flat.area * normal;
-                membrane[node] |= !part.bending_only;
+                membrane[node] |= !shell.bending_only;
             }
         }
     }
@@ -178,8 +179,8 @@ mod tests {
                 }
             }
         }
-        let part = ShellPart { theory, ..ShellPart::new("plate", faces, STEEL, 2e-3) };
-        (Model { nodes, shells: vec![part], ..Model::default() }, (0..=along).collect(), turn)
+        let part = Part::new("plate", faces, Shell { theory, ..Shell::new(STEEL, 2e-3) });
+        (Model { nodes, parts: vec![part], ..Model::default() }, (0..=along).collect(), turn)
     }
 
     /// Uniform shear v = γ x beside a clamped or a rigid edge turns the material by γ/2 right up to it: the strain energy is ½ G γ² V.
@@ -252,13 +253,11 @@ mod tests {
                 let end = model.nodes.len();
                 model.nodes.push([0.0, 0.0, 5.0]);
                 let section = Section::round(0.01);
-                model.bars.push(BarPart {
-                    name: "bar".into(),
-                    elements: vec![[0, end]],
-                    material: STEEL,
-                    section,
-                    orientation: [0.3, 1.0, 0.2],
-                });
+                model.parts.push(Part::new(
+                    "bar",
+                    vec![Cell::line([0, end])],
+                    Bar { material: STEEL, section, orientation: [0.3, 1.0, 0.2] },
+                ));
             }
             assemble(&model).unwrap().dofs.n_dofs()
         };

@@ -6,6 +6,7 @@ use crate::error::Result;
 use crate::linalg::dense::{product, symmetric_eigen};
 use crate::linalg::sparse::{add_scaled, diagonal, is_unresisted, sum_of_squares, times};
 use crate::linalg::{SparseMatrix, SparseVector};
+use crate::mesh::Cell;
 use crate::system::Structure;
 use faer::Mat;
 use std::collections::{BTreeMap, BTreeSet};
@@ -261,14 +262,13 @@ fn orthonormal(x: &Mat<f64>) -> Result<Mat<f64>> {
 /// For every node, the lowest of those that elements and rigid links connect it to.
 fn bodies(model: &Model, assembled: &Assembled) -> Vec<usize> {
     let (dofs, free) = (&assembled.dofs, assembled.dofs.free_dofs());
-    let faces = model.shells.iter().flat_map(|part| part.faces.iter().map(|face| face.nodes().to_vec()));
-    let bars = model.bars.iter().flat_map(|part| part.elements.iter().map(|nodes| nodes.to_vec()));
+    let cells = model.parts.iter().flat_map(|part| part.cells.iter().map(|cell| cell.nodes().to_vec()));
     let linked = (0..dofs.n_nodes()).map(|node| vec![node]);
     let moved = |nodes: Vec<usize>| -> Vec<usize> {
         let terms = nodes.into_iter().flat_map(|node| (0..6).flat_map(move |dof| dofs.terms(node, dof)));
         terms.map(|(k, _)| free[*k].node).collect()
     };
-    lowest_connected(dofs.n_nodes(), faces.chain(bars).chain(linked).map(moved))
+    lowest_connected(dofs.n_nodes(), cells.chain(linked).map(moved))
 }
 
 /// How many of the motions that the columns of `x` span have xᵀKx / xᵀx of at most `bound`, with `forces` = K x.
@@ -287,29 +287,24 @@ fn names(model: &Model, assembled: &Assembled, of_node: &[usize], number: usize)
         let moved = (0..6).find_map(|dof| assembled.dofs.terms(node, dof).first());
         moved.is_some_and(|(k, _)| of_node[free[*k].node] == number)
     };
-    let shells = model
-        .shells
-        .iter()
-        .map(|part| (&part.name, part.faces.iter().flat_map(|f| f.nodes()).any(|n| inside(*n))));
-    let bars = model.bars.iter().map(|part| (&part.name, part.elements.iter().flatten().any(|n| inside(*n))));
-    shells.chain(bars).filter(|(_, inside)| *inside).map(|(name, _)| name.clone()).collect()
+    let within =
+        model.parts.iter().filter(|part| part.cells.iter().flat_map(Cell::nodes).any(|n| inside(*n)));
+    within.map(|part| part.name.clone()).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::samples::STEEL;
-    use super::super::{BarPart, Model, Section, Spring, Support, assemble};
+    use super::super::{Bar, Model, Part, Section, Spring, Support, assemble};
     use super::*;
     use crate::linalg::random::Random;
 
-    fn bar(name: &str, nodes: [usize; 2]) -> BarPart {
-        BarPart {
-            name: name.into(),
-            elements: vec![nodes],
-            material: STEEL,
-            section: Section::round(0.02),
-            orientation: [0.0, 0.0, 1.0],
-        }
+    fn bar(name: &str, nodes: [usize; 2]) -> Part {
+        Part::new(
+            name,
+            vec![Cell::line(nodes)],
+            Bar { material: STEEL, section: Section::round(0.02), orientation: [0.0, 0.0, 1.0] },
+        )
     }
 
     #[test]
@@ -317,7 +312,7 @@ mod tests {
         let nodes = (0..6).map(|k| [0.3 * k as f64, 0.1 * (k / 2) as f64, 0.0]).collect();
         let model = Model {
             nodes,
-            bars: vec![bar("held", [0, 1]), bar("loose", [2, 3]), bar("hinged", [4, 5])],
+            parts: vec![bar("held", [0, 1]), bar("loose", [2, 3]), bar("hinged", [4, 5])],
             supports: vec![
                 Support { nodes: vec![0], held: [true; 6] },
                 Support { nodes: vec![4], held: [true, true, true, true, false, true] },
@@ -358,7 +353,7 @@ mod tests {
             let nodes: Vec<[f64; 3]> = (0..3 * bars).map(|_| place()).collect();
             let mut model = Model {
                 nodes: nodes.clone(),
-                bars: (0..2 * bars)
+                parts: (0..2 * bars)
                     .map(|k| bar(&format!("bar {k}"), [3 * (k / 2) + k % 2, 3 * (k / 2) + k % 2 + 1]))
                     .collect(),
                 ..Model::default()

@@ -5,17 +5,15 @@ use super::elements::{FlatTriangle, split_face};
 use super::material::Material;
 use super::section::Section;
 use crate::mesh::Cell;
-use crate::schema::choices;
+use crate::schema::{choices, dotted};
 
 /// A structure: nodes and all that hangs on them. Degrees of freedom are (ux, uy, uz, rx, ry, rz) at every node.
 #[derive(Debug, Clone, Default)]
 pub struct Model {
     /// Node coordinates \[m\], tilted and moved into place.
     pub nodes: Vec<[f64; 3]>,
-    /// Plates.
-    pub shells: Vec<ShellPart>,
-    /// Bars.
-    pub bars: Vec<BarPart>,
+    /// What it is made of.
+    pub parts: Vec<Part>,
     /// Concentrated masses.
     pub masses: Vec<PointMass>,
     /// Springs, each with its dashpot.
@@ -36,20 +34,36 @@ choices! {
     }
 }
 
-/// A plate of constant thickness.
+/// A part: cells of one kind of structure.
 #[derive(Debug, Clone)]
-pub struct ShellPart {
+pub struct Part {
     /// Its region's name.
     pub name: String,
-    /// Triangles and quadrilaterals on [`Model::nodes`], all turned the same way.
-    pub faces: Vec<Cell>,
+    /// On [`Model::nodes`]: lines of a bar; faces of a shell, all turned the same way.
+    pub cells: Vec<Cell>,
+    /// What they are.
+    pub kind: PartKind,
+}
+
+/// The kinds of parts.
+#[derive(Debug, Clone)]
+pub enum PartKind {
+    /// A plate.
+    Shell(Shell),
+    /// A bar.
+    Bar(Bar),
+}
+
+/// A plate of constant thickness.
+#[derive(Debug, Clone)]
+pub struct Shell {
     /// Material.
     pub material: Material,
     /// h \[m\].
     pub thickness: f64,
     /// Plate theory of bending.
     pub theory: PlateTheory,
-    /// κ of Mindlin's theory; `None` for 5/(6−ν), see [`ShellPart::shear_coefficient`].
+    /// κ of Mindlin's theory; `None` for 5/(6−ν), see [`Shell::shear_coefficient`].
     pub shear_coefficient: Option<f64>,
     /// Holds the membrane: displacements in the plate's plane and the rotation about its normal.
     pub bending_only: bool,
@@ -57,23 +71,119 @@ pub struct ShellPart {
     pub rotary_inertia: bool,
 }
 
+/// A bar of constant section.
+#[derive(Debug, Clone)]
+pub struct Bar {
+    /// Material.
+    pub material: Material,
+    /// Its section.
+    pub section: Section,
+    /// A vector in the plane of the section's first axis; any that is not along the bar.
+    pub orientation: [f64; 3],
+}
+
 impl Model {
     /// The first shell that has all of `nodes`.
-    pub fn shell_with(&self, nodes: &[usize]) -> Option<&ShellPart> {
-        self.shells.iter().find(|shell| {
-            let mut own: Vec<usize> = shell.faces.iter().flat_map(Cell::nodes).copied().collect();
-            own.sort_unstable();
+    pub fn shell_with(&self, nodes: &[usize]) -> Option<&Part> {
+        self.shells().map(|(part, _)| part).find(|part| {
+            let own = part.nodes();
             nodes.iter().all(|n| own.binary_search(n).is_ok())
         })
     }
+
+    /// The shells among its parts.
+    pub fn shells(&self) -> impl Iterator<Item = (&Part, &Shell)> {
+        self.parts.iter().filter_map(|part| Some((part, part.as_shell()?)))
+    }
+
+    /// The part of this name.
+    pub fn part(&self, name: &str) -> Option<&Part> {
+        self.parts.iter().find(|part| part.name == name)
+    }
 }
 
-impl ShellPart {
-    /// A thin plate of `faces`, its membrane free, its rotary inertia counted; `thickness` h \[m\].
-    pub fn new(name: &str, faces: Vec<Cell>, material: Material, thickness: f64) -> Self {
-        ShellPart {
-            name: name.into(),
-            faces,
+impl Part {
+    /// A part `name` of `cells`.
+    pub fn new(name: &str, cells: Vec<Cell>, kind: impl Into<PartKind>) -> Self {
+        Part { name: name.into(), cells, kind: kind.into() }
+    }
+
+    /// What it is as a shell.
+    pub fn as_shell(&self) -> Option<&Shell> {
+        match &self.kind {
+            PartKind::Shell(shell) => Some(shell),
+            PartKind::Bar(_) => None,
+        }
+    }
+
+    /// h \[m\] of a shell, zero of others.
+    pub fn thickness(&self) -> f64 {
+        self.as_shell().map_or(0.0, |shell| shell.thickness)
+    }
+
+    /// Its table in a case, in back-ticks: `shell.disc`.
+    pub fn place(&self) -> String {
+        format!("`{}.{}`", self.kind.name(), dotted(&self.name))
+    }
+
+    /// Its nodes, ascending, each once.
+    pub fn nodes(&self) -> Vec<usize> {
+        let mut nodes: Vec<usize> = self.cells.iter().flat_map(Cell::nodes).copied().collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        nodes
+    }
+
+    /// A \[m²\] of all faces of a shell.
+    pub fn area(&self, nodes: &[[f64; 3]]) -> f64 {
+        let triangles = self.cells.iter().flat_map(split_face);
+        let area = |nodes: [[f64; 3]; 3]| FlatTriangle::new(&nodes).map_or(0.0, |triangle| triangle.area);
+        triangles.map(|t| t.weight * area(t.nodes.map(|n| nodes[n]))).sum()
+    }
+}
+
+impl From<Shell> for PartKind {
+    fn from(shell: Shell) -> Self {
+        PartKind::Shell(shell)
+    }
+}
+
+impl From<Bar> for PartKind {
+    fn from(bar: Bar) -> Self {
+        PartKind::Bar(bar)
+    }
+}
+
+impl PartKind {
+    /// The material.
+    pub fn material(&self) -> &Material {
+        match self {
+            PartKind::Shell(shell) => &shell.material,
+            PartKind::Bar(bar) => &bar.material,
+        }
+    }
+
+    /// `shell` or `bar`.
+    pub fn name(&self) -> &'static str {
+        match self {
+            PartKind::Shell(_) => "shell",
+            PartKind::Bar(_) => "bar",
+        }
+    }
+
+    /// The dimension of its cells.
+    pub fn dimension(&self) -> usize {
+        match self {
+            PartKind::Shell(_) => 2,
+            PartKind::Bar(_) => 1,
+        }
+    }
+}
+
+impl Shell {
+    /// A thin plate of thickness h \[m\], its membrane free, its rotary inertia counted.
+    pub fn new(material: Material, thickness: f64) -> Self {
+        Shell {
             material,
             thickness,
             theory: PlateTheory::Kirchhoff,
@@ -90,28 +200,6 @@ impl ShellPart {
     pub fn shear_coefficient(&self) -> f64 {
         self.shear_coefficient.unwrap_or_else(|| shear_coefficient(self.material.poissons_ratio))
     }
-
-    /// A \[m²\] of all faces.
-    pub fn area(&self, nodes: &[[f64; 3]]) -> f64 {
-        let triangles = self.faces.iter().flat_map(split_face);
-        let area = |nodes: [[f64; 3]; 3]| FlatTriangle::new(&nodes).map_or(0.0, |triangle| triangle.area);
-        triangles.map(|t| t.weight * area(t.nodes.map(|n| nodes[n]))).sum()
-    }
-}
-
-/// A bar of constant section.
-#[derive(Debug, Clone)]
-pub struct BarPart {
-    /// Its region's name.
-    pub name: String,
-    /// Two-node elements on [`Model::nodes`].
-    pub elements: Vec<[usize; 2]>,
-    /// Material.
-    pub material: Material,
-    /// Its section.
-    pub section: Section,
-    /// A vector in the plane of the section's first axis; any that is not along the bar.
-    pub orientation: [f64; 3],
 }
 
 /// A mass at a node.

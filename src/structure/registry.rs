@@ -4,7 +4,7 @@ use super::elements::{
     BarElement, FacePoint, FiniteElement, KirchhoffTriangle, MassElement, MindlinQuadrilateral,
     MindlinTriangle, SpringElement, split_face,
 };
-use super::model::{Model, PlateTheory, ShellPart};
+use super::model::{Model, Part, PartKind, PlateTheory, Shell};
 use crate::mesh::Cell;
 
 /// An element of any kind.
@@ -12,33 +12,37 @@ pub(super) type AnyElement<'a> = Box<dyn FiniteElement + 'a>;
 /// Elements in a fixed order.
 type Elements<'a> = Vec<AnyElement<'a>>;
 
-/// The elements of `model`: shells, bars, masses, springs.
+/// The elements of `model`: parts, masses, springs.
 pub(super) fn elements(model: &Model) -> Elements<'_> {
     let nodes = &model.nodes;
     let mut elements: Elements = Vec::new();
-    for part in &model.shells {
-        part.faces.iter().for_each(|face| push_elements(part, face, nodes, &mut elements));
-    }
-    for part in &model.bars {
-        elements.extend(part.elements.iter().map(|ends| boxed(BarElement::new(part, nodes, *ends))));
+    for part in &model.parts {
+        part.cells.iter().for_each(|cell| push_elements(&part.kind, cell, nodes, &mut elements));
     }
     elements.extend(model.masses.iter().map(|point| boxed(MassElement::new(point, nodes))));
     elements.extend(model.springs.iter().map(|spring| boxed(SpringElement::new(spring))));
     elements
 }
 
-/// Adds the elements on one face of a plate to `to`; none for points and lines.
-fn push_elements<'a>(part: &'a ShellPart, face: &Cell, nodes: &'a [[f64; 3]], to: &mut Elements<'a>) {
-    match (part.theory, face.corners()) {
+/// Adds the elements on one cell of a part to `to`; none for a cell of another dimension.
+fn push_elements<'a>(kind: &'a PartKind, cell: &Cell, nodes: &'a [[f64; 3]], to: &mut Elements<'a>) {
+    match kind {
+        PartKind::Shell(shell) => push_plates(shell, cell, nodes, to),
+        PartKind::Bar(bar) => to.extend(cell.ends().map(|ends| boxed(BarElement::new(bar, nodes, ends)))),
+    }
+}
+
+fn push_plates<'a>(plate: &'a Shell, face: &Cell, nodes: &'a [[f64; 3]], to: &mut Elements<'a>) {
+    match (plate.theory, face.corners()) {
         (PlateTheory::Kirchhoff, _) => {
             let triangles = split_face(face);
-            to.extend(triangles.iter().map(|t| boxed(KirchhoffTriangle::new(part, nodes, t))));
+            to.extend(triangles.iter().map(|t| boxed(KirchhoffTriangle::new(plate, nodes, t))));
         }
         (PlateTheory::Mindlin, &[a, b, c]) => {
-            to.push(boxed(MindlinTriangle::new(part, nodes, [a, b, c])));
+            to.push(boxed(MindlinTriangle::new(plate, nodes, [a, b, c])));
         }
         (PlateTheory::Mindlin, &[a, b, c, d]) => {
-            to.push(boxed(MindlinQuadrilateral::new(part, nodes, [a, b, c, d])));
+            to.push(boxed(MindlinQuadrilateral::new(plate, nodes, [a, b, c, d])));
         }
         (PlateTheory::Mindlin, _) => {}
     }
@@ -48,17 +52,17 @@ fn boxed<'a>(element: impl FiniteElement + 'a) -> AnyElement<'a> {
     Box::new(element)
 }
 
-impl ShellPart {
-    /// The elements on face `face` of the part, on nodes with the given coordinates.
-    pub(super) fn elements_on<'a>(&'a self, face: &Cell, nodes: &'a [[f64; 3]]) -> Elements<'a> {
+impl Part {
+    /// The elements on `cell`, one of the part's own, on nodes with the given coordinates.
+    pub(super) fn elements_on<'a>(&'a self, cell: &Cell, nodes: &'a [[f64; 3]]) -> Elements<'a> {
         let mut elements = Vec::new();
-        push_elements(self, face, nodes, &mut elements);
+        push_elements(&self.kind, cell, nodes, &mut elements);
         elements
     }
 
-    /// One of its elements, which knows what the theory of the part holds for; `None` of a part without faces.
+    /// One of its elements, which knows what the theory of the part holds for; `None` of a part without cells.
     pub fn element<'a>(&'a self, nodes: &'a [[f64; 3]]) -> Option<Box<dyn FiniteElement + 'a>> {
-        self.elements_on(self.faces.first()?, nodes).into_iter().next()
+        self.elements_on(self.cells.first()?, nodes).into_iter().next()
     }
 
     /// The displacement of a point of its face `face`, on nodes with the given coordinates: for each node that it depends on, the
@@ -69,7 +73,7 @@ impl ShellPart {
         face: usize,
         at: &FacePoint,
     ) -> Vec<(usize, usize, [f64; 6])> {
-        let elements = self.elements_on(&self.faces[face], nodes);
+        let elements = self.elements_on(&self.cells[face], nodes);
         let of = |element: &AnyElement| {
             let columns = element.displacement_at(at)?;
             let freedoms = element.nodes().iter().flat_map(|n| element.components().iter().map(|c| (*n, *c)));

@@ -2,6 +2,7 @@
 
 use crate::common::*;
 use nalgebra::{DMatrix, DVector, Matrix3, Rotation3, SMatrix, SVector, Vector3};
+use stridor::mesh::Cell;
 use stridor::structure::elements::{Beam, FlatShell, dkt, opt};
 use stridor::structure::*;
 
@@ -249,13 +250,11 @@ fn euler_column_buckles() {
     let nodes: Vec<[f64; 3]> = (0..=n).map(|k| [0.0, 0.0, l * k as f64 / n as f64]).collect();
     let model = Model {
         nodes,
-        bars: vec![BarPart {
-            name: "column".into(),
-            elements: (0..n).map(|k| [k, k + 1]).collect(),
-            material: steel(),
-            section,
-            orientation: [1.0, 0.0, 0.0],
-        }],
+        parts: vec![Part::new(
+            "column",
+            (0..n).map(|k| Cell::line([k, k + 1])).collect(),
+            Bar { material: steel(), section, orientation: [1.0, 0.0, 0.0] },
+        )],
         supports: vec![Support { nodes: vec![0], held: [true; 6] }],
         ..Model::default()
     };

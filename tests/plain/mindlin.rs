@@ -10,8 +10,8 @@ use stridor::structure::elements::{ElementMatrix, FacePoint, dkt};
 use stridor::structure::*;
 use stridor::validation::kirchhoff;
 
-fn thick(faces: Vec<Cell>, h: f64) -> ShellPart {
-    ShellPart { theory: PlateTheory::Mindlin, ..ShellPart::new("plate", faces, steel(), h) }
+fn thick(h: f64) -> Shell {
+    Shell { theory: PlateTheory::Mindlin, ..Shell::new(steel(), h) }
 }
 
 /// An irregular patch of the unit square, three quadrilaterals and two triangles, warped by `warp` and turned in space.
@@ -46,7 +46,7 @@ fn turned() -> Rotation3<f64> {
 
 /// K and M of one face on the six degrees of freedom of its nodes.
 fn matrices(face: &Cell, nodes: &[[f64; 3]], h: f64) -> [DMatrix<f64>; 2] {
-    let part = thick(vec![face.clone()], h);
+    let part = Part::new("plate", vec![face.clone()], thick(h));
     let element = part.element(nodes).unwrap();
     let n = element.n_freedoms();
     assert_eq!((n, element.nodes()), (6 * face.nodes().len(), face.nodes()));
@@ -112,14 +112,13 @@ fn patch_test_of_constant_moments() {
 fn patch_test_of_constant_shear_in_thick_plates() {
     for (h, bound) in [(1e2, 1e-3), (1e4, 1e-7)] {
         let (nodes, faces) = patch(&Rotation3::identity(), 0.0);
-        let part = thick(faces.clone(), h);
         let k = patch_stiffness(&nodes, &faces, h);
         let (gx, gy) = (0.3e-3, -0.8e-3);
         let state = DVector::from_iterator(
             54,
             FLAT.iter().flat_map(|[x, y]| [0.0, 0.0, gx * x + gy * y, 0.0, 0.0, 0.0]),
         );
-        let shear = part.shear_coefficient() * steel().shear_modulus() * h;
+        let shear = thick(h).shear_coefficient() * steel().shear_modulus() * h;
         let energy = shear * (gx * gx + gy * gy);
         let found = state.dot(&(&k * &state));
         assert!((found / energy - 1.0).abs() < bound, "h {h}: {:e}", found / energy - 1.0);
@@ -151,7 +150,7 @@ fn rank_rigid_motions_and_mass() {
                 let mut values: Vec<f64> = scaled.symmetric_eigenvalues().iter().copied().collect();
                 values.sort_by(f64::total_cmp);
                 assert!(values[5].abs() < 1e-9 && values[6] > 1e-7, "{face:?} h {h}: {values:?}");
-                let part = thick(vec![face.clone()], h);
+                let part = Part::new("plate", vec![face.clone()], thick(h));
                 let (total, _) = part.element(&nodes).unwrap().mass_and_center();
                 assert!((total / (7850.0 * h * part.area(&nodes)) - 1.0).abs() < 1e-13);
                 for axis in 0..3 {
@@ -168,7 +167,7 @@ fn rank_rigid_motions_and_mass() {
 #[test]
 fn interpolation_meets_rigid_motions_and_constant_curvature() {
     let (nodes, faces) = patch(&turned(), 0.0);
-    let part = thick(faces.clone(), 0.05);
+    let part = Part::new("plate", faces.clone(), thick(0.05));
     let l = [0.2, 0.3, 0.5];
     for (face, element) in faces.iter().enumerate() {
         let corners: [usize; 3] = std::array::from_fn(|k| element.nodes()[k + element.nodes().len() - 3]);
@@ -201,7 +200,7 @@ fn random(mut seed: u64) -> impl FnMut() -> f64 {
 }
 
 /// The unit square of n × n cells, simply supported (hard), inner nodes moved by up to `off` of half a cell at random.
-fn supported_square(n: usize, part: ShellPart, quadrilaterals: bool, off: f64) -> Model {
+fn supported_square(n: usize, shell: Shell, quadrilaterals: bool, off: f64) -> Model {
     let mut random = random(7);
     let id = |i: usize, j: usize| i * (n + 1) + j;
     let inside = |i: usize| i > 0 && i < n;
@@ -236,7 +235,7 @@ fn supported_square(n: usize, part: ShellPart, quadrilaterals: bool, off: f64) -
         Support { nodes: along(|i, _| i == 0), held: [false, false, true, true, false, false] },
         Support { nodes: along(|_, j| j == 0), held: [false, false, true, false, true, false] },
     ];
-    Model { nodes, shells: vec![ShellPart { faces, ..part }], supports, ..Model::default() }
+    Model { nodes, parts: vec![Part::new("plate", faces, shell)], supports, ..Model::default() }
 }
 
 /// Waves across the diagonals of a supported square, k² = π²(m² + n²), the lowest `count` of them.
@@ -260,8 +259,8 @@ fn navier(kappa: f64, h: f64, count: usize) -> Vec<f64> {
 fn supported_errors(h: f64, kappa: f64, quadrilaterals: bool, off: f64, cells: [usize; 3]) -> [f64; 3] {
     let exact = navier(kappa, h, 6);
     cells.map(|n| {
-        let part = ShellPart { shear_coefficient: Some(kappa), bending_only: true, ..thick(Vec::new(), h) };
-        let assembled = assemble(&supported_square(n, part, quadrilaterals, off)).unwrap();
+        let shell = Shell { shear_coefficient: Some(kappa), bending_only: true, ..thick(h) };
+        let assembled = assemble(&supported_square(n, shell, quadrilaterals, off)).unwrap();
         worst(&lowest_frequencies(&assembled.structure, exact.len(), 0.0), &exact)
     })
 }
@@ -291,8 +290,8 @@ fn no_locking_in_the_thin_limit() {
     assert!(worst(&mindlin, &exact) < 1e-6);
     for (quadrilaterals, off) in [(false, 0.0), (false, 0.5), (true, 0.0), (true, 0.5)] {
         let errors = [8, 16, 32].map(|n| {
-            let part = ShellPart { bending_only: true, ..thick(Vec::new(), 1e-4) };
-            let assembled = assemble(&supported_square(n, part, quadrilaterals, off)).unwrap();
+            let shell = Shell { bending_only: true, ..thick(1e-4) };
+            let assembled = assemble(&supported_square(n, shell, quadrilaterals, off)).unwrap();
             worst(&lowest_frequencies(&assembled.structure, exact.len(), 0.0), &exact)
         });
         let order = (errors[1] / errors[2]).log2();
@@ -332,8 +331,8 @@ fn thick_supported_squares_by_three_dimensional_elasticity() {
         let exact: Vec<f64> = wavenumbers(6).iter().map(|k| lamb(h, *k) / TAU).collect();
         let theory = worst(&navier(5.0 / 5.7, h, 6), &exact);
         for quadrilaterals in [false, true] {
-            let part = ShellPart { bending_only: true, ..thick(Vec::new(), h) };
-            let assembled = assemble(&supported_square(32, part, quadrilaterals, 0.0)).unwrap();
+            let shell = Shell { bending_only: true, ..thick(h) };
+            let assembled = assemble(&supported_square(32, shell, quadrilaterals, 0.0)).unwrap();
             let found = lowest_frequencies(&assembled.structure, 6, 0.0);
             let kirchhoff: Vec<f64> = {
                 let thin = kirchhoff::ThinPlate {
@@ -512,9 +511,9 @@ fn thick_circular_plates_converge_to_the_closed_form() {
         for quadrilaterals in [false, true] {
             let errors = [32, 64].map(|n| {
                 let (nodes, faces, rim) = disc(n, quadrilaterals);
-                let part =
-                    ShellPart { shear_coefficient: Some(kappa), bending_only: true, ..thick(faces, h) };
-                let mut model = Model { nodes, shells: vec![part], ..Model::default() };
+                let shell = Shell { shear_coefficient: Some(kappa), bending_only: true, ..thick(h) };
+                let part = Part::new("plate", faces, shell);
+                let mut model = Model { nodes, parts: vec![part], ..Model::default() };
                 let (skip, shift) = match edge {
                     Edge::Clamped => (0, 0.0),
                     Edge::Free => (3, 0.3 * exact[0]),
@@ -546,7 +545,7 @@ fn membrane_forces_raise_the_frequencies_as_they_should() {
     let thin =
         kirchhoff::ThinPlate { youngs_modulus: 210e9, poissons_ratio: 0.3, density: 7850.0, thickness: h };
     for quadrilaterals in [false, true] {
-        let model = supported_square(16, thick(Vec::new(), h), quadrilaterals, 0.5);
+        let model = supported_square(16, thick(h), quadrilaterals, 0.5);
         let assembled = assemble(&model).unwrap();
         let u: Vec<f64> = assembled
             .dofs

@@ -72,25 +72,25 @@ fn rectangle(a: f64, b: f64, n: usize, m: usize, quadrilaterals: bool) -> (Vec<[
     (nodes, faces)
 }
 
-fn plate(thin: &ThinPlate, faces: Vec<Cell>, bending_only: bool) -> ShellPart {
+fn plate(thin: &ThinPlate, faces: Vec<Cell>, bending_only: bool) -> Part {
     let material = Material {
         youngs_modulus: thin.youngs_modulus,
         poissons_ratio: thin.poissons_ratio,
         density: thin.density,
         ..steel()
     };
-    ShellPart {
-        bending_only,
-        rotary_inertia: false,
-        ..ShellPart::new("plate", faces, material, thin.thickness)
-    }
+    Part::new(
+        "plate",
+        faces,
+        Shell { bending_only, rotary_inertia: false, ..Shell::new(material, thin.thickness) },
+    )
 }
 
 fn clamped_annulus(ratio: f64, radial: usize, angular: usize, bending_only: bool) -> Model {
     let (nodes, faces) = annulus(ratio * 0.075, 0.075, radial, angular);
     Model {
         nodes,
-        shells: vec![plate(&DISC, faces, bending_only)],
+        parts: vec![plate(&DISC, faces, bending_only)],
         supports: vec![Support { nodes: (0..angular).collect(), held: [true; 6] }],
         ..Model::default()
     }
@@ -148,7 +148,7 @@ fn random_annulus(ratio: f64, radial: usize, angular: usize, seed: u64) -> Model
         let (sin, cos) = (0.5 * std::f64::consts::TAU * random() / angular as f64).sin_cos();
         [*y, *z] = [stretch * (cos * *y - sin * *z), stretch * (sin * *y + cos * *z)];
     }
-    for pair in model.shells[0].faces.chunks_mut(2) {
+    for pair in model.parts[0].cells.chunks_mut(2) {
         // [p, q, r] and [p, r, s], or [p, q, s] and [q, r, s].
         let (first, second) = (pair[0].nodes(), pair[1].nodes());
         let [p, q] = [first[0], first[1]];
@@ -199,7 +199,7 @@ fn bending_only_is_the_same_plate_in_any_plane() {
 #[test]
 fn free_circular_plate() {
     let (nodes, faces) = full_disc(0.075, 24, 96);
-    let model = Model { nodes, shells: vec![plate(&DISC, faces, false)], ..Model::default() };
+    let model = Model { nodes, parts: vec![plate(&DISC, faces, false)], ..Model::default() };
     let assembled = assemble(&model).unwrap();
     let exact = doubled(&circular_modes(&DISC, 0.075, Edge::Free, None, 2500.0));
     let found = lowest_frequencies(&assembled.structure, exact.len() + 6, 100.0);
@@ -213,7 +213,7 @@ fn free_circular_plate() {
 #[test]
 fn in_plane_modes_of_a_free_disc() {
     let (nodes, faces) = full_disc(0.075, 16, 64);
-    let mut model = Model { nodes, shells: vec![plate(&DISC, faces, false)], ..Model::default() };
+    let mut model = Model { nodes, parts: vec![plate(&DISC, faces, false)], ..Model::default() };
     // Held out of its plane everywhere: only the membrane is left.
     model.supports.push(Support {
         nodes: (0..model.nodes.len()).collect(),
@@ -253,7 +253,7 @@ fn square_plates() {
     ] {
         for quadrilaterals in [false, true] {
             let (nodes, faces) = rectangle(0.3, 0.3, n, n, quadrilaterals);
-            let mut model = Model { nodes, shells: vec![plate(&square, faces, false)], ..Model::default() };
+            let mut model = Model { nodes, parts: vec![plate(&square, faces, false)], ..Model::default() };
             model.supports.extend(held.map(|held| Support { nodes: rim.clone(), held }));
             let assembled = assemble(&model).unwrap();
             let found = lowest_frequencies(&assembled.structure, skip + 6, shift);
@@ -279,7 +279,7 @@ fn nafems_thin_plates() {
         (vec![Support { nodes: (0..=n).collect(), held: [true; 6] }], &cantilever[..], 0, 0.0),
     ] {
         let (nodes, faces) = rectangle(10.0, 10.0, n, n, false);
-        let model = Model { nodes, shells: vec![plate(&thin, faces, false)], supports, ..Model::default() };
+        let model = Model { nodes, parts: vec![plate(&thin, faces, false)], supports, ..Model::default() };
         let found = lowest_frequencies(&assemble(&model).unwrap().structure, skip + exact.len(), shift);
         let errors: Vec<f64> = exact.iter().zip(&found[skip..]).map(|(e, f)| f / e - 1.0).collect();
         println!("{errors:?}");
@@ -295,13 +295,11 @@ fn cantilever_bar_bends_stretches_and_twists() {
     let along = [2.0_f64 / 3.0, 1.0 / 3.0, 2.0 / 3.0];
     let model = Model {
         nodes: (0..=n).map(|k| along.map(|d| d * l * k as f64 / n as f64)).collect(),
-        bars: vec![BarPart {
-            name: "bar".into(),
-            elements: (0..n).map(|k| [k, k + 1]).collect(),
-            material: steel(),
-            section,
-            orientation: [0.0, 0.0, 1.0],
-        }],
+        parts: vec![Part::new(
+            "bar",
+            (0..n).map(|k| Cell::line([k, k + 1])).collect(),
+            Bar { material: steel(), section, orientation: [0.0, 0.0, 1.0] },
+        )],
         supports: vec![Support { nodes: vec![0], held: [true; 6] }],
         ..Model::default()
     };
@@ -336,7 +334,7 @@ fn square_plate_buckles_at_four() {
     let hold = |nodes: Vec<usize>, k: usize| Support { nodes, held: std::array::from_fn(|i| i == k) };
     let model = Model {
         nodes,
-        shells: vec![plate(&thin, faces, false)],
+        parts: vec![plate(&thin, faces, false)],
         // The loaded edges are free to widen along themselves.
         supports: vec![hold(rim, 2), hold((0..=n).collect(), 0), hold(vec![0], 1)],
         ..Model::default()

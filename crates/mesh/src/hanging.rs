@@ -89,8 +89,8 @@ pub(super) fn hanging(mesh: &Mesh) -> Vec<Hanging> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Cell, diagnose};
     use crate::generate::{Faces, structured_plate};
+    use crate::{Cell, diagnose};
 
     /// Two plates side by side, of `left` and `right` cells along the seam, which share the nodes at equal places.
     fn side_by_side(

@@ -1,22 +1,29 @@
 use super::*;
-use crate::structure::{Material, PlateTheory, RayleighDamping};
+use crate::structure::{Material, PartKind, PlateTheory, RayleighDamping, Shell};
 
 const DISC_RADIUS: f64 = 0.075;
 const SLIDER: f64 = 0.010;
 
-fn part(name: &str, thickness: f64, faces: Vec<Cell>) -> ShellPart {
+fn part(name: &str, thickness: f64, faces: Vec<Cell>) -> Part {
     let rayleigh = RayleighDamping::default();
     let material =
         Material { youngs_modulus: 2e11, poissons_ratio: 0.3, density: 7850.0, loss_factor: 0.0, rayleigh };
-    ShellPart { rotary_inertia: false, ..ShellPart::new(name, faces, material, thickness) }
+    Part::new(name, faces, Shell { rotary_inertia: false, ..Shell::new(material, thickness) })
+}
+
+fn shell_of(part: &mut Part) -> &mut Shell {
+    match &mut part.kind {
+        PartKind::Shell(shell) => shell,
+        _ => panic!("a shell"),
+    }
 }
 
 /// A fan of triangles in the y–z plane (tilted by `lead` about y), its lowest rim node touching z = 0 at `x`, and a
 /// slider of quadrilaterals whose upper face is z = 0.
 struct Rig {
     nodes: Vec<[f64; 3]>,
-    disc: ShellPart,
-    slider: ShellPart,
+    disc: Part,
+    slider: Part,
     rim: Vec<[usize; 2]>,
 }
 
@@ -103,7 +110,7 @@ fn directions_are_the_relative_displacement_of_the_points() {
         [(0.0, PlateTheory::Kirchhoff), (0.08, PlateTheory::Kirchhoff), (0.08, PlateTheory::Mindlin)]
     {
         let mut rig = rig(lead, -0.031, 0.0);
-        rig.slider.theory = theory;
+        shell_of(&mut rig.slider).theory = theory;
         let points = pair_surfaces(&surfaces(&rig, ContactPatch::Reach(2e-3)), &reduce).unwrap();
         let disc_nodes = 0..181;
         let (t, r) = ([3e-4, -2e-4, 5e-4], [0.02, -0.03, 0.04]);
@@ -207,7 +214,7 @@ fn points_do_not_depend_on_the_order_of_faces() {
         [0.0, 1.0].into_iter().flat_map(|b| [(b, PlateTheory::Kirchhoff), (b, PlateTheory::Mindlin)])
     {
         let mut rig = rig(0.0, 0.0, 0.0);
-        rig.slider.theory = theory;
+        shell_of(&mut rig.slider).theory = theory;
         rig.nodes[181..].iter_mut().for_each(|x| x[2] += bend * x[0] * (0.1 * x[0] - 0.3 * x[1]));
         let faces = add_pad(&mut rig, 0.0);
         let pad = part("pad", 4e-3, faces.clone());
@@ -215,8 +222,8 @@ fn points_do_not_depend_on_the_order_of_faces() {
         (s.body, s.side) = (&pad, ContactSide::Face(&faces));
         let one = pair_surfaces(&s, &reduce).unwrap();
         let mut other = rig.slider.clone();
-        other.faces.reverse();
-        for (k, face) in other.faces.iter_mut().enumerate() {
+        other.cells.reverse();
+        for (k, face) in other.cells.iter_mut().enumerate() {
             let mut corners = face.nodes().to_vec();
             corners.rotate_left(k % 4);
             *face = Cell::new(face.kind(), &corners).unwrap();
@@ -261,7 +268,7 @@ fn misplaced_bodies_are_explained() {
     assert!(fault(&centred, |s| s.side = ContactSide::Edge(&[])).contains("no line or face"));
     // The node stands over the slider, but not the points at half the thickness of a thick disc.
     let mut thick = rig(0.0, 0.0, 0.0);
-    thick.disc.thickness = 3.0;
+    shell_of(&mut thick.disc).thickness = 3.0;
     let text = fault(&thick, |_| {});
     assert!(
         text.contains("stands over none of the") && text.contains("the thickness of `disc`, 3 m"),

@@ -9,27 +9,27 @@
 use crate::error::Fault;
 use crate::numbers::significant;
 use crate::schema::dotted;
-use crate::structure::{Model, ShellPart};
+use crate::structure::{Model, Part};
 
 /// h/L above which a body is no plate.
 const BLOCK: f64 = 0.3;
 
 pub fn warnings(model: &Model) -> Vec<Fault> {
-    model.shells.iter().filter_map(|part| of_part(part, &model.nodes)).collect()
+    model.shells().filter_map(|(part, _)| of_part(part, &model.nodes)).collect()
 }
 
-fn of_part(part: &ShellPart, nodes: &[[f64; 3]]) -> Option<Fault> {
+fn of_part(part: &Part, nodes: &[[f64; 3]]) -> Option<Fault> {
     let size = part.area(nodes).sqrt();
-    if part.thickness <= BLOCK * size {
+    if part.thickness() <= BLOCK * size {
         return None;
     }
     let found = format!(
         "{} m, {} times the size of the part (√area = {} m)",
-        significant(part.thickness, 4),
-        significant(part.thickness / size, 2),
+        significant(part.thickness(), 4),
+        significant(part.thickness() / size, 2),
         significant(size, 3)
     );
-    let help = if part.thickness > size {
+    let help = if part.thickness() > size {
         "Check its unit and that of the mesh"
     } else {
         "A body as thick as that is no plate: check the unit, or take its frequencies with care"
@@ -43,13 +43,15 @@ fn of_part(part: &ShellPart, nodes: &[[f64; 3]]) -> Option<Fault> {
 mod tests {
     use super::*;
     use crate::mesh::Cell;
+    use crate::structure::Shell;
     use crate::structure::samples::STEEL;
 
     #[test]
     fn a_metre_on_a_hand_is_no_plate() {
         let nodes = [[0.0; 3], [0.15, 0.0, 0.0], [0.15, 0.15, 0.0], [0.0, 0.15, 0.0]];
-        let part =
-            |thickness| ShellPart::new("disc", vec![Cell::quadrilateral([0, 1, 2, 3])], STEEL, thickness);
+        let part = |thickness| {
+            Part::new("disc", vec![Cell::quadrilateral([0, 1, 2, 3])], Shell::new(STEEL, thickness))
+        };
         assert_eq!(of_part(&part(0.04), &nodes), None);
         let text = of_part(&part(1.0), &nodes).unwrap().to_string();
         assert!(text.contains("6.7 times") && text.contains("0.0450 m") && text.contains("unit"), "{text}");

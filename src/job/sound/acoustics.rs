@@ -4,7 +4,7 @@ use super::super::prepared::Prepared;
 use crate::case::{ON_AXIS, SoundAnalysis};
 use crate::error::{Fault, Faults, Result};
 use crate::sound::{Acoustics, Air, Surface};
-use crate::structure::ShellPart;
+use crate::structure::Part;
 
 /// Plates, microphones and air of a case, checked before anything is computed or written.
 ///
@@ -12,9 +12,9 @@ use crate::structure::ShellPart;
 /// Plates that are not flat, none at all, a microphone on a plate or in the plane of every one.
 pub fn acoustics(prepared: &Prepared<'_>, wanted: &SoundAnalysis) -> Result<Acoustics> {
     let mut faults = Faults::new();
-    let chosen = |part: &&ShellPart| wanted.plates.is_empty() || wanted.plates.contains(&part.name);
+    let chosen = |part: &&Part| wanted.plates.is_empty() || wanted.plates.contains(&part.name);
     let mut plates = Vec::new();
-    for part in prepared.model.shells.iter().filter(chosen) {
+    for part in prepared.model.shells().map(|(part, _)| part).filter(chosen) {
         match surface(prepared, part) {
             Some(plate) => plates.push(plate),
             None => faults.push(
@@ -62,8 +62,8 @@ pub fn acoustics(prepared: &Prepared<'_>, wanted: &SoundAnalysis) -> Result<Acou
 }
 
 /// A shell part; `None` when it is not flat.
-fn surface(prepared: &Prepared<'_>, part: &ShellPart) -> Option<Surface> {
-    let faces = part.faces.iter().map(|face| face.nodes());
+fn surface(prepared: &Prepared<'_>, part: &Part) -> Option<Surface> {
+    let faces = part.cells.iter().map(|face| face.nodes());
     let dofs = &prepared.assembled.dofs;
     Surface::new(&part.name, &prepared.model.nodes, faces, &|terms| dofs.reduce(terms))
 }

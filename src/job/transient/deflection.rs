@@ -2,7 +2,7 @@
 
 use super::snapshots::Snapshots;
 use crate::error::Result;
-use crate::structure::{Model, ShellPart};
+use crate::structure::{Model, Part, Shell};
 use crate::transient::{Checkpoint, Marched};
 use nalgebra::{Matrix3, Vector3};
 
@@ -21,7 +21,8 @@ pub(super) struct Deflections<'a> {
 
 /// A plate: its nodes, where they are in its mean plane, and its normal.
 struct Plate<'a> {
-    part: &'a ShellPart,
+    part: &'a Part,
+    shell: &'a Shell,
     nodes: Vec<usize>,
     /// 1, x, y of each node, the lengths as parts of the size of the plate.
     places: Vec<Vector3<f64>>,
@@ -35,7 +36,8 @@ struct Plate<'a> {
 impl<'a> Deflections<'a> {
     /// Those of the plates of `model` in a run of so many steps.
     pub(super) fn new(model: &'a Model, nodes: Snapshots<'a>, steps: usize) -> Self {
-        let plates = model.shells.iter().filter_map(|part| Plate::new(part, &model.nodes)).collect();
+        let plates =
+            model.shells().filter_map(|(part, shell)| Plate::new(part, shell, &model.nodes)).collect();
         Deflections { nodes, every: steps.div_ceil(LOOKS).max(1), plates }
     }
 
@@ -72,7 +74,7 @@ impl<'a> Deflections<'a> {
     /// Plates that bend by more than the model can mean.
     pub(super) fn warnings(&self) -> Vec<String> {
         let words = |plate: &Plate| {
-            let ShellPart { name, thickness, .. } = plate.part;
+            let (name, thickness) = (&plate.part.name, plate.shell.thickness);
             format!(
                 "In motion the plate {name} bends by {:.3} mm, {:.1} times its thickness of {:.3} mm: plates are linear here, which they \
                  are up to about one thickness; beyond, they stretch and stiffen. Amplitudes of this run have no meaning, \
@@ -82,17 +84,15 @@ impl<'a> Deflections<'a> {
                 1e3 * thickness
             )
         };
-        let far = |plate: &&Plate| plate.largest > LINEAR * plate.part.thickness;
+        let far = |plate: &&Plate| plate.largest > LINEAR * plate.shell.thickness;
         self.plates.iter().filter(far).map(words).collect()
     }
 }
 
 impl<'a> Plate<'a> {
     /// `None` of a part without a mean normal, such as a tube.
-    fn new(part: &'a ShellPart, all: &[[f64; 3]]) -> Option<Self> {
-        let mut nodes: Vec<usize> = part.faces.iter().flat_map(|face| face.nodes()).copied().collect();
-        nodes.sort_unstable();
-        nodes.dedup();
+    fn new(part: &'a Part, shell: &'a Shell, all: &[[f64; 3]]) -> Option<Self> {
+        let nodes = part.nodes();
         let at = |node: usize| Vector3::from(all[node]);
         let area = |corners: &[usize]| -> Vector3<f64> {
             (1..corners.len().saturating_sub(1))
@@ -101,7 +101,7 @@ impl<'a> Plate<'a> {
                 })
                 .sum()
         };
-        let areas: Vec<Vector3<f64>> = part.faces.iter().map(|face| area(face.nodes())).collect();
+        let areas: Vec<Vector3<f64>> = part.cells.iter().map(|face| area(face.nodes())).collect();
         let whole: Vector3<f64> = areas.iter().sum();
         if whole.norm() < 0.5 * areas.iter().map(|a| a.norm()).sum::<f64>() || whole.norm() == 0.0 {
             return None;
@@ -118,7 +118,7 @@ impl<'a> Plate<'a> {
         };
         let places: Vec<Vector3<f64>> = nodes.iter().map(place).collect();
         let inverse = places.iter().map(|p| p * p.transpose()).sum::<Matrix3<f64>>().try_inverse()?;
-        Some(Plate { part, nodes, places, normal, inverse, largest: 0.0 })
+        Some(Plate { part, shell, nodes, places, normal, inverse, largest: 0.0 })
     }
 
     /// max |w| \[m\] of the motion along the normal without what moves the plate as a whole, w = a + b x + c y by least squares.

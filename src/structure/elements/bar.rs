@@ -1,23 +1,23 @@
 //! The bar of a part of the model.
 
 use super::{Beam, ElementMatrix, FiniteElement};
-use crate::structure::{BarPart, Material};
+use crate::structure::{Bar, Material};
 
 /// An Euler–Bernoulli bar between two nodes, 12 freedoms.
 pub struct BarElement<'a> {
-    part: &'a BarPart,
+    bar: &'a Bar,
     coordinates: &'a [[f64; 3]],
     nodes: [usize; 2],
 }
 
 impl<'a> BarElement<'a> {
-    /// A bar of `part` on nodes with the given coordinates \[m\].
-    pub fn new(part: &'a BarPart, coordinates: &'a [[f64; 3]], nodes: [usize; 2]) -> Self {
-        BarElement { part, coordinates, nodes }
+    /// A bar with the section of `bar` on nodes with the given coordinates \[m\].
+    pub fn new(bar: &'a Bar, coordinates: &'a [[f64; 3]], nodes: [usize; 2]) -> Self {
+        BarElement { bar, coordinates, nodes }
     }
 
     fn geometry(&self) -> Option<Beam> {
-        Beam::new(&self.nodes.map(|n| self.coordinates[n]), self.part.orientation)
+        Beam::new(&self.nodes.map(|n| self.coordinates[n]), self.bar.orientation)
     }
 
     fn beam(&self) -> Beam {
@@ -35,29 +35,29 @@ impl FiniteElement for BarElement<'_> {
     }
 
     fn material(&self) -> Option<&Material> {
-        Some(&self.part.material)
+        Some(&self.bar.material)
     }
 
     fn stiffness(&self, k: &mut ElementMatrix) -> bool {
-        k.copy(&self.beam().stiffness(&self.part.material, &self.part.section));
+        k.copy(&self.beam().stiffness(&self.bar.material, &self.bar.section));
         true
     }
 
     fn mass(&self, m: &mut ElementMatrix) -> bool {
-        m.copy(&self.beam().mass(self.part.material.density, &self.part.section));
+        m.copy(&self.beam().mass(self.bar.material.density, &self.bar.section));
         true
     }
 
     fn geometric_stiffness(&self, displacement: &[[f64; 6]], k: &mut ElementMatrix) -> bool {
         let beam = self.beam();
         let u = self.nodes.map(|n| displacement[n]);
-        k.copy(&beam.geometric_stiffness(beam.axial_force(&self.part.material, &self.part.section, &u)));
+        k.copy(&beam.geometric_stiffness(beam.axial_force(&self.bar.material, &self.bar.section, &u)));
         true
     }
 
     fn mass_and_center(&self) -> (f64, [f64; 3]) {
         let length = self.geometry().map_or(0.0, |beam| beam.length());
-        let mass = self.part.material.density * self.part.section.area * length;
+        let mass = self.bar.material.density * self.bar.section.area * length;
         (mass, super::mean(&self.nodes, self.coordinates))
     }
 }

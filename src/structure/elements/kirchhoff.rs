@@ -2,12 +2,12 @@
 
 use super::waves::{kirchhoff_wavenumber, thickness_error};
 use super::{Acting, ElementMatrix, FacePoint, FiniteElement, FlatShell, TheoryError, WeightedTriangle};
-use crate::structure::{Material, ShellPart};
+use crate::structure::{Material, Shell};
 use nalgebra::SMatrix;
 
 /// A triangle of a plate by Kirchhoff's theory, 18 freedoms.
 pub struct KirchhoffTriangle<'a> {
-    part: &'a ShellPart,
+    plate: &'a Shell,
     coordinates: &'a [[f64; 3]],
     nodes: [usize; 3],
     /// 1, or ½ of the triangles of a quadrilateral.
@@ -17,11 +17,11 @@ pub struct KirchhoffTriangle<'a> {
 }
 
 impl<'a> KirchhoffTriangle<'a> {
-    /// A triangle of `part` on nodes with the given coordinates \[m\].
-    pub fn new(part: &'a ShellPart, coordinates: &'a [[f64; 3]], triangle: &WeightedTriangle) -> Self {
+    /// A triangle of `plate` on nodes with the given coordinates \[m\].
+    pub fn new(plate: &'a Shell, coordinates: &'a [[f64; 3]], triangle: &WeightedTriangle) -> Self {
         let WeightedTriangle { nodes, weight } = *triangle;
         let geometry = FlatShell::new(&nodes.map(|n| coordinates[n]));
-        KirchhoffTriangle { part, coordinates, nodes, weight, geometry }
+        KirchhoffTriangle { plate, coordinates, nodes, weight, geometry }
     }
 
     fn shell(&self) -> &FlatShell {
@@ -40,7 +40,7 @@ impl FiniteElement for KirchhoffTriangle<'_> {
     }
 
     fn acting(&self) -> Acting {
-        if !self.part.bending_only {
+        if !self.plate.bending_only {
             return Acting::Everywhere;
         }
         Acting::Along(self.shell().bending_directions())
@@ -51,32 +51,32 @@ impl FiniteElement for KirchhoffTriangle<'_> {
     }
 
     fn material(&self) -> Option<&Material> {
-        Some(&self.part.material)
+        Some(&self.plate.material)
     }
 
     fn stiffness(&self, k: &mut ElementMatrix) -> bool {
-        let part = self.part;
-        self.weighted(&self.shell().stiffness(&part.material, part.thickness, part.bending_only), k)
+        let plate = self.plate;
+        self.weighted(&self.shell().stiffness(&plate.material, plate.thickness, plate.bending_only), k)
     }
 
     fn mass(&self, m: &mut ElementMatrix) -> bool {
-        let ShellPart { material, thickness, rotary_inertia, bending_only, .. } = self.part;
+        let Shell { material, thickness, rotary_inertia, bending_only, .. } = self.plate;
         self.weighted(&self.shell().mass(material.density, *thickness, *rotary_inertia, *bending_only), m)
     }
 
     fn geometric_stiffness(&self, displacement: &[[f64; 6]], k: &mut ElementMatrix) -> bool {
-        if self.part.bending_only {
+        if self.plate.bending_only {
             return false;
         }
         let shell = self.shell();
         let u = self.nodes.map(|n| displacement[n]);
-        let forces = shell.membrane_forces(&self.part.material, self.part.thickness, &u);
+        let forces = shell.membrane_forces(&self.plate.material, self.plate.thickness, &u);
         self.weighted(&shell.geometric_stiffness(forces), k)
     }
 
     fn mass_and_center(&self) -> (f64, [f64; 3]) {
         let area = self.geometry.as_ref().map_or(0.0, |shell| shell.triangle().area);
-        let mass = self.part.material.density * self.part.thickness * area * self.weight;
+        let mass = self.plate.material.density * self.plate.thickness * area * self.weight;
         (mass, super::mean(&self.nodes, self.coordinates))
     }
 
@@ -86,7 +86,7 @@ impl FiniteElement for KirchhoffTriangle<'_> {
     }
 
     fn theory_error(&self, frequency_hz: f64) -> Option<TheoryError> {
-        let ShellPart { material, thickness, rotary_inertia, .. } = self.part;
+        let Shell { material, thickness, rotary_inertia, .. } = self.plate;
         let k = kirchhoff_wavenumber(material, *thickness, *rotary_inertia, frequency_hz);
         Some(TheoryError {
             wavenumber_times_thickness: k * thickness,
@@ -95,7 +95,7 @@ impl FiniteElement for KirchhoffTriangle<'_> {
     }
 
     fn bending_wavenumber(&self, frequency_hz: f64) -> Option<f64> {
-        let ShellPart { material, thickness, rotary_inertia, .. } = self.part;
+        let Shell { material, thickness, rotary_inertia, .. } = self.plate;
         Some(kirchhoff_wavenumber(material, *thickness, *rotary_inertia, frequency_hz))
     }
 }

@@ -19,7 +19,7 @@ pub use triangle::{MindlinTriangle, triangle_rotary_inertia, triangle_stiffness}
 
 use super::FacePoint;
 use super::waves::mindlin_wavenumber;
-use crate::structure::ShellPart;
+use crate::structure::Shell;
 use nalgebra::{RowSVector, SMatrix};
 
 /// Curvatures (β_x,x; β_y,y; β_x,y + β_y,x) from the x and y derivatives of (β_x, β_y).
@@ -35,7 +35,7 @@ fn corners_among<const N: usize>(nodes: &[usize; N], at: &FacePoint) -> Option<[
     Some([place(a)?, place(b)?, place(c)?])
 }
 
-/// k \[rad/m\] of the bending waves of `part`.
-fn wavenumber(part: &ShellPart, frequency_hz: f64) -> Option<f64> {
-    Some(mindlin_wavenumber(&part.material, part.thickness, part.shear_coefficient(), frequency_hz))
+/// k \[rad/m\] of the bending waves of `plate`.
+fn wavenumber(plate: &Shell, frequency_hz: f64) -> Option<f64> {
+    Some(mindlin_wavenumber(&plate.material, plate.thickness, plate.shear_coefficient(), frequency_hz))
 }

@@ -7,7 +7,7 @@ use crate::structure::elements::triangle::twice_area;
 use crate::structure::elements::{
     Acting, ElementMatrix, FacePoint, FiniteElement, FlatShell, geometric, mass, mean, symmetrized, to_global,
 };
-use crate::structure::{Material, ShellPart};
+use crate::structure::{Material, Shell};
 use nalgebra::{Matrix2, Matrix3, RowSVector, SMatrix, Vector3};
 
 /// The triangles of both splittings.
@@ -31,7 +31,7 @@ const ROWS: [usize; 24] = {
 /// deflection and the membrane displacement are the means over the two splittings into triangles, each triangle of the membrane stiffness in
 /// its own plane, so that a warped quadrilateral is free of strain in rigid motions, too.
 pub struct MindlinQuadrilateral<'a> {
-    part: &'a ShellPart,
+    plate: &'a Shell,
     coordinates: &'a [[f64; 3]],
     nodes: [usize; 4],
 }
@@ -216,9 +216,9 @@ fn rows_of(triangle: &[usize; 3]) -> [usize; 18] {
 }
 
 impl<'a> MindlinQuadrilateral<'a> {
-    /// A quadrilateral of `part` on nodes with the given coordinates \[m\].
-    pub fn new(part: &'a ShellPart, coordinates: &'a [[f64; 3]], nodes: [usize; 4]) -> Self {
-        MindlinQuadrilateral { part, coordinates, nodes }
+    /// A quadrilateral of `plate` on nodes with the given coordinates \[m\].
+    pub fn new(plate: &'a Shell, coordinates: &'a [[f64; 3]], nodes: [usize; 4]) -> Self {
+        MindlinQuadrilateral { plate, coordinates, nodes }
     }
 
     fn points(&self) -> [[f64; 3]; 4] {
@@ -230,7 +230,7 @@ impl<'a> MindlinQuadrilateral<'a> {
     }
 
     fn sides(&self, plane: &MeanPlane) -> [Side<12>; 4] {
-        sides(&plane.corners, &PlateSection::new(self.part))
+        sides(&plane.corners, &PlateSection::new(self.plate))
     }
 
     /// The triangles of both splittings in space.
@@ -247,7 +247,7 @@ impl FiniteElement for MindlinQuadrilateral<'_> {
     }
 
     fn acting(&self) -> Acting {
-        if !self.part.bending_only {
+        if !self.plate.bending_only {
             return Acting::Everywhere;
         }
         Acting::Along(bending_directions(&self.plane().frame))
@@ -258,16 +258,16 @@ impl FiniteElement for MindlinQuadrilateral<'_> {
     }
 
     fn material(&self) -> Option<&Material> {
-        Some(&self.part.material)
+        Some(&self.plate.material)
     }
 
     fn stiffness(&self, k: &mut ElementMatrix) -> bool {
-        let (plane, part) = (self.plane(), self.part);
-        let bending = stiffness(&plane, &PlateSection::new(part));
+        let (plane, plate) = (self.plane(), self.plate);
+        let bending = stiffness(&plane, &PlateSection::new(plate));
         k.add(&to_global(&with_bending(&bending), &plane.frame), &ROWS, 1.0);
-        if !part.bending_only {
+        if !plate.bending_only {
             for (triangle, shell) in self.triangles() {
-                let membrane = shell.membrane_stiffness(&part.material, part.thickness);
+                let membrane = shell.membrane_stiffness(&plate.material, plate.thickness);
                 k.add(&shell.embedded(None, Some(&membrane)), &rows_of(&triangle), 0.5);
             }
         }
@@ -276,8 +276,8 @@ impl FiniteElement for MindlinQuadrilateral<'_> {
 
     /// ρh ∫ w² dA, the mean over both splittings, with the cubics w of the [`slopes`], and rotary inertia of β.
     fn mass(&self, m: &mut ElementMatrix) -> bool {
-        let (plane, part) = (self.plane(), self.part);
-        let (density, thickness) = (part.material.density, part.thickness);
+        let (plane, plate) = (self.plane(), self.plate);
+        let (density, thickness) = (plate.material.density, plate.thickness);
         let sides = self.sides(&plane);
         let map = slopes(&corner_shear(&sides));
         let mut bending = SMatrix::<f64, 12, 12>::zeros();
@@ -286,7 +286,7 @@ impl FiniteElement for MindlinQuadrilateral<'_> {
             let (corners, area) = (triangle.map(|k| plane.corners[k]), shell.triangle().area);
             let products = deflection_products(&corners) * (0.5 * density * thickness * area);
             bending += on_slopes(&map, &triangle, &products);
-            if part.bending_only {
+            if plate.bending_only {
                 continue;
             }
             // The mass of the triangle as it is, the shape of its projection.
@@ -299,7 +299,7 @@ impl FiniteElement for MindlinQuadrilateral<'_> {
                 }
             }
         }
-        if part.rotary_inertia {
+        if plate.rotary_inertia {
             bending += rotary_inertia(&plane, &sides, density, thickness);
         }
         m.copy(&to_global(&(local + with_bending(&symmetrized(bending))), &plane.frame));
@@ -308,8 +308,8 @@ impl FiniteElement for MindlinQuadrilateral<'_> {
 
     /// The mean over both splittings; the membrane forces of each triangle in its own plane.
     fn geometric_stiffness(&self, displacement: &[[f64; 6]], k: &mut ElementMatrix) -> bool {
-        let part = self.part;
-        if part.bending_only {
+        let plate = self.plate;
+        if plate.bending_only {
             return false;
         }
         let plane = self.plane();
@@ -317,7 +317,7 @@ impl FiniteElement for MindlinQuadrilateral<'_> {
         let mut bending = SMatrix::<f64, 12, 12>::zeros();
         for (triangle, shell) in self.triangles() {
             let u = triangle.map(|k| displacement[self.nodes[k]]);
-            let [nx, ny, nxy] = shell.membrane_forces(&part.material, part.thickness, &u);
+            let [nx, ny, nxy] = shell.membrane_forces(&plate.material, plate.thickness, &u);
             // From the axes of the triangle to those of the mean plane.
             let turn =
                 (plane.frame * shell.triangle().frame.transpose()).fixed_view::<2, 2>(0, 0).into_owned();
@@ -332,7 +332,7 @@ impl FiniteElement for MindlinQuadrilateral<'_> {
 
     fn mass_and_center(&self) -> (f64, [f64; 3]) {
         let area: f64 = self.triangles().map(|(_, shell)| 0.5 * shell.triangle().area).sum();
-        (self.part.material.density * self.part.thickness * area, mean(&self.nodes, self.coordinates))
+        (self.plate.material.density * self.plate.thickness * area, mean(&self.nodes, self.coordinates))
     }
 
     /// The deflection is the cubic of the mass on the triangle, the rotations in the plane are those of the section, the rest is
@@ -360,6 +360,6 @@ impl FiniteElement for MindlinQuadrilateral<'_> {
     }
 
     fn bending_wavenumber(&self, frequency_hz: f64) -> Option<f64> {
-        wavenumber(self.part, frequency_hz)
+        wavenumber(self.plate, frequency_hz)
     }
 }

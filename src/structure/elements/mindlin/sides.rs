@@ -1,6 +1,6 @@
 //! Shear strain and bulge of the rotation on the sides of an element.
 
-use crate::structure::ShellPart;
+use crate::structure::Shell;
 use crate::structure::elements::dkt::bending_rigidity;
 use nalgebra::{Matrix3, RowSVector, SMatrix};
 
@@ -14,12 +14,12 @@ pub struct PlateSection {
 }
 
 impl PlateSection {
-    /// The section of `part`.
-    pub fn new(part: &ShellPart) -> Self {
-        let material = &part.material;
+    /// The section of `plate`.
+    pub fn new(plate: &Shell) -> Self {
+        let material = &plate.material;
         PlateSection {
-            rigidity: bending_rigidity(material.youngs_modulus, material.poissons_ratio, part.thickness),
-            shear: part.shear_coefficient() * material.shear_modulus() * part.thickness,
+            rigidity: bending_rigidity(material.youngs_modulus, material.poissons_ratio, plate.thickness),
+            shear: plate.shear_coefficient() * material.shear_modulus() * plate.thickness,
         }
     }
 }

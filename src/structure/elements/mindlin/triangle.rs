@@ -7,12 +7,12 @@ use crate::structure::elements::triangle::{gradients, twice_area};
 use crate::structure::elements::{
     Acting, ElementMatrix, FacePoint, FiniteElement, FlatShell, geometric, mass, mean, symmetrized,
 };
-use crate::structure::{Material, ShellPart};
+use crate::structure::{Material, Shell};
 use nalgebra::{RowSVector, SMatrix};
 
 /// A triangle of a plate by Mindlin's theory, 18 freedoms.
 pub struct MindlinTriangle<'a> {
-    part: &'a ShellPart,
+    plate: &'a Shell,
     coordinates: &'a [[f64; 3]],
     nodes: [usize; 3],
 }
@@ -82,9 +82,9 @@ pub fn triangle_rotary_inertia(
 }
 
 impl<'a> MindlinTriangle<'a> {
-    /// A triangle of `part` on nodes with the given coordinates \[m\].
-    pub fn new(part: &'a ShellPart, coordinates: &'a [[f64; 3]], nodes: [usize; 3]) -> Self {
-        MindlinTriangle { part, coordinates, nodes }
+    /// A triangle of `plate` on nodes with the given coordinates \[m\].
+    pub fn new(plate: &'a Shell, coordinates: &'a [[f64; 3]], nodes: [usize; 3]) -> Self {
+        MindlinTriangle { plate, coordinates, nodes }
     }
 
     fn geometry(&self) -> Option<FlatShell> {
@@ -97,7 +97,7 @@ impl<'a> MindlinTriangle<'a> {
 
     /// [`slopes`] of the triangle.
     fn slopes(&self, corners: &[[f64; 2]; 3]) -> SMatrix<f64, 9, 9> {
-        slopes(&corner_shear(&sides::<3, 9>(corners, &PlateSection::new(self.part))))
+        slopes(&corner_shear(&sides::<3, 9>(corners, &PlateSection::new(self.plate))))
     }
 }
 
@@ -107,7 +107,7 @@ impl FiniteElement for MindlinTriangle<'_> {
     }
 
     fn acting(&self) -> Acting {
-        if !self.part.bending_only {
+        if !self.plate.bending_only {
             return Acting::Everywhere;
         }
         Acting::Along(self.shell().bending_directions())
@@ -118,40 +118,41 @@ impl FiniteElement for MindlinTriangle<'_> {
     }
 
     fn material(&self) -> Option<&Material> {
-        Some(&self.part.material)
+        Some(&self.plate.material)
     }
 
     fn stiffness(&self, k: &mut ElementMatrix) -> bool {
-        let (shell, part) = (self.shell(), self.part);
-        let bending = triangle_stiffness(&shell.triangle().corners, &PlateSection::new(part));
-        let membrane = (!part.bending_only).then(|| shell.membrane_stiffness(&part.material, part.thickness));
+        let (shell, plate) = (self.shell(), self.plate);
+        let bending = triangle_stiffness(&shell.triangle().corners, &PlateSection::new(plate));
+        let membrane =
+            (!plate.bending_only).then(|| shell.membrane_stiffness(&plate.material, plate.thickness));
         k.copy(&shell.embedded(Some(&bending), membrane.as_ref()));
         true
     }
 
     /// ρh ∫ w² dA with the cubic w of the [`slopes`], and rotary inertia of β.
     fn mass(&self, m: &mut ElementMatrix) -> bool {
-        let (shell, part) = (self.shell(), self.part);
+        let (shell, plate) = (self.shell(), self.plate);
         let (corners, area) = (&shell.triangle().corners, shell.triangle().area);
-        let (density, thickness) = (part.material.density, part.thickness);
+        let (density, thickness) = (plate.material.density, plate.thickness);
         let map = self.slopes(corners);
         let mut bending = map.transpose() * deflection_products(corners) * map * (density * thickness * area);
-        if part.rotary_inertia {
-            bending += triangle_rotary_inertia(corners, &PlateSection::new(part), density, thickness);
+        if plate.rotary_inertia {
+            bending += triangle_rotary_inertia(corners, &PlateSection::new(plate), density, thickness);
         }
-        let membrane = (!part.bending_only).then(|| mass::membrane(corners, density, thickness));
+        let membrane = (!plate.bending_only).then(|| mass::membrane(corners, density, thickness));
         m.copy(&shell.embedded(Some(&symmetrized(bending)), membrane.as_ref()));
         true
     }
 
     fn geometric_stiffness(&self, displacement: &[[f64; 6]], k: &mut ElementMatrix) -> bool {
-        if self.part.bending_only {
+        if self.plate.bending_only {
             return false;
         }
         let shell = self.shell();
         let corners = &shell.triangle().corners;
         let u = self.nodes.map(|n| displacement[n]);
-        let forces = shell.membrane_forces(&self.part.material, self.part.thickness, &u);
+        let forces = shell.membrane_forces(&self.plate.material, self.plate.thickness, &u);
         let map = self.slopes(corners);
         let bending = map.transpose() * geometric::plate(corners, forces) * map;
         k.copy(&shell.embedded(Some(&symmetrized(bending)), None));
@@ -160,7 +161,7 @@ impl FiniteElement for MindlinTriangle<'_> {
 
     fn mass_and_center(&self) -> (f64, [f64; 3]) {
         let area = self.geometry().map_or(0.0, |shell| shell.triangle().area);
-        (self.part.material.density * self.part.thickness * area, mean(&self.nodes, self.coordinates))
+        (self.plate.material.density * self.plate.thickness * area, mean(&self.nodes, self.coordinates))
     }
 
     /// The deflection is the cubic of the mass, the rotations in the plane are those of the section, the rest is linear.
@@ -170,7 +171,7 @@ impl FiniteElement for MindlinTriangle<'_> {
         order.into_iter().zip(at.barycentric).for_each(|(k, value)| l[k] = value);
         let shell = self.shell();
         let corners = &shell.triangle().corners;
-        let sides = sides::<3, 9>(corners, &PlateSection::new(self.part));
+        let sides = sides::<3, 9>(corners, &PlateSection::new(self.plate));
         let mut rows = bciz::interpolate(corners, l) * slopes(&corner_shear(&sides));
         // θ₁ = −β_y, θ₂ = β_x.
         let mut rotation = SMatrix::<f64, 2, 9>::zeros();
@@ -195,6 +196,6 @@ impl FiniteElement for MindlinTriangle<'_> {
     }
 
     fn bending_wavenumber(&self, frequency_hz: f64) -> Option<f64> {
-        wavenumber(self.part, frequency_hz)
+        wavenumber(self.plate, frequency_hz)
     }
 }
