@@ -28,6 +28,7 @@ pub mod info;
 mod jacobian;
 mod kind;
 mod orient;
+mod quadrature;
 pub mod quality;
 mod shape;
 mod skin;
@@ -38,6 +39,7 @@ pub use check::{Diagnosis, diagnose};
 pub use gmsh::read;
 pub use info::Info;
 pub use kind::{CellKind, CellTable};
+pub use quadrature::QuadraturePoint;
 pub use skin::Side;
 pub use write::{to_msh, write};
 

@@ -17,6 +17,7 @@ mod grading;
 mod pad;
 mod plate;
 mod rig;
+mod solid;
 mod structured;
 
 pub use disc::{DiscSpec, disc};
@@ -24,6 +25,7 @@ pub use grading::Grading;
 pub use pad::{PadOnDiscSpec, pad_on_disc};
 pub use plate::{PlateSpec, plate};
 pub use rig::{BarSide, BarSpec, RigSpec, rig};
+pub use solid::structured_box;
 pub use structured::{Faces, structured_annulus, structured_plate};
 
 use stridor_base::error::{Error, Fault, Faults, Result};
