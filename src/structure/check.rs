@@ -62,6 +62,7 @@ fn check_parts(model: &Model, faults: &mut Faults) {
                 positive(&place, "second second moment", section.inertia_2, "m⁴", faults);
                 positive(&place, "torsion constant", section.torsion, "m⁴", faults);
             }
+            PartKind::Solid(_) => {}
         }
         let dimension = part.kind.dimension();
         let others = part.cells.iter().filter(|cell| cell.dimension() != dimension).count();
@@ -143,6 +144,7 @@ enum Shape {
     NoLength,
     NoArea,
     Folded,
+    Inverted,
 }
 
 /// What is found, what is expected, what to do.
@@ -165,12 +167,25 @@ const SHAPES: &[(Shape, &str, &str, &str)] = &[
         "convex quadrilaterals",
         "Merge coincident nodes or mesh the region again",
     ),
+    (
+        Shape::Inverted,
+        "whose Jacobian is not positive at a point of the quadrature",
+        "solids that are not turned inside out",
+        "Mesh the region again, or bring nodes in the middle of edges back into place",
+    ),
 ];
 
 /// Whether the elements of the part can be made of a cell: all triangles of a face have an area and look the same way.
 fn shape(part: &Part, nodes: &[[f64; 3]], cell: &Cell) -> Shape {
     let unusable = || part.elements_on(cell, nodes).iter().any(|e| e.is_degenerate());
     match part.kind {
+        PartKind::Solid(_) => {
+            if unusable() {
+                Shape::Inverted
+            } else {
+                Shape::Sound
+            }
+        }
         PartKind::Bar(_) => {
             if unusable() {
                 Shape::NoLength

@@ -1,7 +1,7 @@
 //! The rotation about the normal of a membrane where an edge is clamped or follows a rigid body.
 
 use super::elements::{FlatTriangle, split_face};
-use super::model::Model;
+use super::model::{Model, PartKind};
 use crate::mesh::Cell;
 use nalgebra::Vector3;
 
@@ -40,8 +40,12 @@ impl Drilling {
             .filter(|(slave, master)| slave != *master)
             .for_each(|(_, m)| leads[*m] = true);
         let mut turned = vec![false; n];
-        let others = model.parts.iter().filter(|part| part.as_shell().is_none()).flat_map(|part| &part.cells);
-        others.flat_map(Cell::nodes).for_each(|node| turned[*node] = true);
+        let bars = model
+            .parts
+            .iter()
+            .filter(|part| matches!(part.kind, PartKind::Bar(_)))
+            .flat_map(|part| &part.cells);
+        bars.flat_map(Cell::nodes).for_each(|node| turned[*node] = true);
         for spring in model.springs.iter().filter(|spring| spring.rotational) {
             turned[spring.node] = true;
             spring.other.iter().for_each(|node| turned[*node] = true);

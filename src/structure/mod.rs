@@ -31,7 +31,9 @@ pub use dofs::{DofMap, FreeDof};
 pub use elements::waves::{thickness_error, thickness_shear_frequency};
 pub use free::{FreePart, free_parts, is_free_along, unresisted_parts};
 pub use material::{Material, RayleighDamping};
-pub use model::{Bar, Model, Part, PartKind, PlateTheory, PointMass, RigidLink, Shell, Spring, Support};
+pub use model::{
+    Bar, Model, Part, PartKind, PlateTheory, PointMass, RigidLink, Shell, Solid, Spring, Support,
+};
 pub use section::Section;
 pub use ties::{TieWords, check_ties};
 pub use warnings::{ThicknessError, element_size, thickness_errors};

@@ -1,7 +1,7 @@
 //! Model of a structure: parts, sections and supports as plain data, before any matrix.
 
 use super::elements::waves::shear_coefficient;
-use super::elements::{FlatTriangle, split_face};
+use super::elements::{Elasticity, FlatTriangle, isotropic, split_face};
 use super::material::Material;
 use super::section::Section;
 use crate::mesh::Cell;
@@ -39,7 +39,7 @@ choices! {
 pub struct Part {
     /// Its region's name.
     pub name: String,
-    /// On [`Model::nodes`]: lines of a bar; faces of a shell, all turned the same way.
+    /// On [`Model::nodes`]: lines of a bar; faces of a shell, all turned the same way; solids.
     pub cells: Vec<Cell>,
     /// What they are.
     pub kind: PartKind,
@@ -52,6 +52,8 @@ pub enum PartKind {
     Shell(Shell),
     /// A bar.
     Bar(Bar),
+    /// A solid.
+    Solid(Solid),
 }
 
 /// A plate of constant thickness.
@@ -80,6 +82,13 @@ pub struct Bar {
     pub section: Section,
     /// A vector in the plane of the section's first axis; any that is not along the bar.
     pub orientation: [f64; 3],
+}
+
+/// A solid.
+#[derive(Debug, Clone)]
+pub struct Solid {
+    /// Material.
+    pub material: Material,
 }
 
 impl Model {
@@ -112,7 +121,7 @@ impl Part {
     pub fn as_shell(&self) -> Option<&Shell> {
         match &self.kind {
             PartKind::Shell(shell) => Some(shell),
-            PartKind::Bar(_) => None,
+            PartKind::Bar(_) | PartKind::Solid(_) => None,
         }
     }
 
@@ -154,20 +163,28 @@ impl From<Bar> for PartKind {
     }
 }
 
+impl From<Solid> for PartKind {
+    fn from(solid: Solid) -> Self {
+        PartKind::Solid(solid)
+    }
+}
+
 impl PartKind {
     /// The material.
     pub fn material(&self) -> &Material {
         match self {
             PartKind::Shell(shell) => &shell.material,
             PartKind::Bar(bar) => &bar.material,
+            PartKind::Solid(solid) => &solid.material,
         }
     }
 
-    /// `shell` or `bar`.
+    /// `shell`, `bar` or `solid`.
     pub fn name(&self) -> &'static str {
         match self {
             PartKind::Shell(_) => "shell",
             PartKind::Bar(_) => "bar",
+            PartKind::Solid(_) => "solid",
         }
     }
 
@@ -176,7 +193,15 @@ impl PartKind {
         match self {
             PartKind::Shell(_) => 2,
             PartKind::Bar(_) => 1,
+            PartKind::Solid(_) => 3,
         }
+    }
+}
+
+impl Solid {
+    /// D \[Pa\] of σ = D ε on (xx, yy, zz, xy, yz, zx), shear strains γ.
+    pub fn elasticity(&self) -> Elasticity {
+        isotropic(&self.material)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::elements::{
     BarElement, FacePoint, FiniteElement, KirchhoffTriangle, MassElement, MindlinQuadrilateral,
-    MindlinTriangle, SpringElement, split_face,
+    MindlinTriangle, SolidElement, SpringElement, split_face,
 };
 use super::model::{Model, Part, PartKind, PlateTheory, Shell};
 use crate::mesh::Cell;
@@ -25,9 +25,13 @@ pub(super) fn elements(model: &Model) -> Elements<'_> {
 }
 
 /// Adds the elements on one cell of a part to `to`; none for a cell of another dimension.
-fn push_elements<'a>(kind: &'a PartKind, cell: &Cell, nodes: &'a [[f64; 3]], to: &mut Elements<'a>) {
+fn push_elements<'a>(kind: &'a PartKind, cell: &'a Cell, nodes: &'a [[f64; 3]], to: &mut Elements<'a>) {
     match kind {
         PartKind::Shell(shell) => push_plates(shell, cell, nodes, to),
+        PartKind::Solid(solid) if cell.dimension() == 3 => {
+            to.push(boxed(SolidElement::new(solid, nodes, cell)))
+        }
+        PartKind::Solid(_) => {}
         PartKind::Bar(bar) => to.extend(cell.ends().map(|ends| boxed(BarElement::new(bar, nodes, ends)))),
     }
 }
@@ -54,7 +58,7 @@ fn boxed<'a>(element: impl FiniteElement + 'a) -> AnyElement<'a> {
 
 impl Part {
     /// The elements on `cell`, one of the part's own, on nodes with the given coordinates.
-    pub(super) fn elements_on<'a>(&'a self, cell: &Cell, nodes: &'a [[f64; 3]]) -> Elements<'a> {
+    pub(super) fn elements_on<'a>(&'a self, cell: &'a Cell, nodes: &'a [[f64; 3]]) -> Elements<'a> {
         let mut elements = Vec::new();
         push_elements(&self.kind, cell, nodes, &mut elements);
         elements

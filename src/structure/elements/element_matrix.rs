@@ -54,6 +54,25 @@ impl ElementMatrix {
         }
     }
 
+    /// Adds a block to the rows 3i, 3i + 1, 3i + 2 of the columns 3j, 3j + 1, 3j + 2.
+    pub fn add_block(&mut self, i: usize, j: usize, block: &SMatrix<f64, 3, 3>) {
+        for c in 0..3 {
+            let start = (3 * j + c) * self.size + 3 * i;
+            for (value, add) in self.values[start..start + 3].iter_mut().zip(block.column(c).iter()) {
+                *value += add;
+            }
+        }
+    }
+
+    /// Copies what is above the diagonal to below it.
+    pub fn mirror(&mut self) {
+        for j in 0..self.size {
+            for i in 0..j {
+                self.values[i * self.size + j] = self.values[j * self.size + i];
+            }
+        }
+    }
+
     /// Sets it to α A + β B, of two matrices of one size.
     pub fn set_sum(&mut self, [alpha, beta]: [f64; 2], [a, b]: [&ElementMatrix; 2]) {
         self.size = a.size;

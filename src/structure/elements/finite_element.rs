@@ -28,7 +28,13 @@ pub trait FiniteElement: Send + Sync {
 
     /// The directions in which it gives its nodes stiffness or mass.
     fn acting(&self) -> Acting {
-        Acting::Everywhere
+        match self.components() {
+            components if components == ALL => Acting::Everywhere,
+            components => {
+                let unit = |k: &usize| std::array::from_fn(|i| if i == *k { 1.0 } else { 0.0 });
+                Acting::Along(components.iter().map(unit).collect())
+            }
+        }
     }
 
     /// Whether its nodes leave it without length, area or orientation; its matrices may then not be computed.

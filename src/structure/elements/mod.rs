@@ -10,6 +10,7 @@
 //! | [`MindlinTriangle`] | thick flat shell: DKMT + OPT | 18 | `mindlin/triangle` |
 //! | [`MindlinQuadrilateral`] | thick flat shell: DKMQ + OPT | 24 | `mindlin/quadrilateral` |
 //! | [`BarElement`] | Euler–Bernoulli bar | 12 | `bar` |
+//! | [`SolidElement`] | solid of any kind of cell | 3 a node | `solid` |
 //! | [`MassElement`] | concentrated mass | 6 | `point` |
 //! | [`SpringElement`] | spring and dashpot | 6, 12 | `point` |
 //!
@@ -47,6 +48,7 @@ pub mod mindlin;
 pub mod opt;
 mod point;
 mod shell;
+mod solid;
 mod triangle;
 pub mod waves;
 
@@ -59,6 +61,7 @@ pub use kirchhoff::KirchhoffTriangle;
 pub use mindlin::{MindlinQuadrilateral, MindlinTriangle};
 pub use point::{MassElement, SpringElement, mass_diagonal, spring_direction};
 pub use shell::FlatShell;
+pub use solid::{Elasticity, SolidElement, isotropic};
 pub use triangle::FlatTriangle;
 
 use nalgebra::SMatrix;
