@@ -18,5 +18,6 @@ mod plates;
 mod properties;
 mod rig;
 mod schema;
+mod solids;
 mod stick_slip;
 mod supply;

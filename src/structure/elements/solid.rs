@@ -22,6 +22,9 @@ type Strain = SMatrix<f64, 6, 3>;
 /// D \[Pa\].
 pub type Elasticity = SMatrix<f64, 6, 6>;
 
+/// How far a middle may be off, as a part of an edge: rounding of coordinates in files.
+const STRAIGHT: f64 = 1e-6;
+
 /// An element on one cell, 3 freedoms a node.
 pub struct SolidElement<'a> {
     solid: &'a Solid,
@@ -39,8 +42,8 @@ struct Tabulated {
 
 /// The quadratures of a kind.
 struct Rules {
-    /// Of K: of the products of gradients where the cell is a parallelepiped.
-    stiffness: Vec<Tabulated>,
+    /// Of K where the cell has straight edges; the other one serves the rest.
+    straight: Vec<Tabulated>,
     /// Of M.
     mass: Vec<Tabulated>,
     /// Gradients in the middle.
@@ -61,7 +64,7 @@ impl Rules {
                 });
                 tabulated.collect()
             };
-            let (stiffness, mass) = match kind {
+            let (straight, mass) = match kind {
                 CellKind::Tetrahedron4 => (1, 2),
                 CellKind::Tetrahedron10 => (2, 5),
                 _ if kind.is_first_order() => (3, 3),
@@ -70,7 +73,7 @@ impl Rules {
             let corners = kind.table().corners;
             let middle =
                 std::array::from_fn(|k| corners.iter().map(|c| c[k]).sum::<f64>() / corners.len() as f64);
-            Rules { stiffness: table(stiffness), mass: table(mass), middle: kind.shape_gradients(middle) }
+            Rules { straight: table(straight), mass: table(mass), middle: kind.shape_gradients(middle) }
         };
         &ALL.get_or_init(|| CellKind::all().map(rules).collect())[kind as usize]
     }
@@ -153,6 +156,24 @@ impl<'a> SolidElement<'a> {
         }
     }
 
+    /// The quadrature of K.
+    fn stiffness_rule(&self) -> &'static [Tabulated] {
+        let rules = Rules::of(self.cell.kind());
+        if self.is_straight() { &rules.straight } else { &rules.mass }
+    }
+
+    /// Whether the nodes in the middle of edges and faces are the means of their corners.
+    fn is_straight(&self) -> bool {
+        let (kind, nodes) = (self.cell.kind(), self.cell.nodes());
+        let at = |k: usize| Vector3::from(self.coordinates[nodes[k]]);
+        let size = (at(0) - at(1)).norm();
+        kind.is_first_order()
+            || kind.table().middles.iter().enumerate().skip(kind.n_corners()).all(|(k, of)| {
+                let mean = of.iter().map(|c| at(usize::from(*c))).sum::<Vector3<f64>>() / of.len() as f64;
+                (at(k) - mean).norm() < STRAIGHT * size
+            })
+    }
+
     fn has_bubbles(&self) -> bool {
         self.cell.kind() == CellKind::Hexahedron8
     }
@@ -174,7 +195,7 @@ impl<'a> SolidElement<'a> {
         let d = self.solid.elasticity();
         let middle = self.has_bubbles().then(|| self.middle());
         let mut gradients = Vec::with_capacity(30);
-        for point in &Rules::of(self.cell.kind()).stiffness {
+        for point in self.stiffness_rule() {
             let volume = self.gradients(point, &mut gradients);
             if let Some(middle) = &middle {
                 self.add_bubbles(point, middle, &mut gradients);
@@ -200,11 +221,11 @@ impl FiniteElement for SolidElement<'_> {
     }
 
     fn is_degenerate(&self) -> bool {
-        let Rules { stiffness, mass, .. } = Rules::of(self.cell.kind());
+        let Rules { straight, mass, .. } = Rules::of(self.cell.kind());
         // NaN is not sound either.
         let keeps_sign = |jacobian: Matrix3<f64>| jacobian.determinant() > 0.0;
         let sound = |point: &Tabulated| keeps_sign(self.jacobian(&point.gradients));
-        !stiffness.iter().chain(mass).all(sound) || !keeps_sign(self.middle())
+        !straight.iter().chain(mass).all(sound) || !keeps_sign(self.middle())
     }
 
     fn material(&self) -> Option<&Material> {
@@ -260,7 +281,7 @@ impl FiniteElement for SolidElement<'_> {
             u.extend((0..3).map(|b| Vector3::new(inside[3 * b], inside[3 * b + 1], inside[3 * b + 2])));
         }
         let mut gradients = Vec::with_capacity(30);
-        for point in &Rules::of(self.cell.kind()).stiffness {
+        for point in self.stiffness_rule() {
             let volume = self.gradients(point, &mut gradients);
             if let Some(middle) = &middle {
                 self.add_bubbles(point, middle, &mut gradients);
