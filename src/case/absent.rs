@@ -4,11 +4,7 @@ use crate::error::{Error, Fault};
 
 /// Keys that a case does not have, with a sentence on each.
 const ABSENT: [(&[&str], &str); 11] = [
-    (
-        &["solid", "solids", "volume", "brick", "tet", "hex"],
-        "Solid elements are not modelled: a plate is a [shell] on its mid-surface, a beam a [bar]; a solid model of another program \
-         comes as [matrices]",
-    ),
+    (&["volume", "brick", "tet", "hex"], "A solid is a [solid.NAME], named as its region of the mesh"),
     (
         &["tie", "ties", "mpc", "coupling", "constraint", "equation"],
         "Ties are not modelled: let the parts share their nodes, or join them by [rigid], or by a [spring] with `to`",

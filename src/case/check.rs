@@ -8,7 +8,8 @@ use crate::schema::{Report, dotted, key};
 impl Consistent for Case {
     fn check(&self, report: &mut Report) {
         // Tables of named tables without names may have meant to define any name.
-        let sections = ["material", "shell", "bar", "spring", "force", "contact", "modes", "frf", "measured"];
+        let sections =
+            ["material", "shell", "bar", "solid", "spring", "force", "contact", "modes", "frf", "measured"];
         if !sections.iter().any(|section| report.unread_itself(section)) {
             check_names(report, self);
         }
@@ -49,7 +50,8 @@ fn check_materials(root: &mut Report, case: &Case) {
         .shell
         .iter()
         .map(|(name, s)| (format!("shell.{}.material", dotted(name)), &s.material))
-        .chain(case.bar.iter().map(|(name, b)| (format!("bar.{}.material", dotted(name)), &b.material)));
+        .chain(case.bar.iter().map(|(name, b)| (format!("bar.{}.material", dotted(name)), &b.material)))
+        .chain(case.solid.iter().map(|(name, s)| (format!("solid.{}.material", dotted(name)), &s.material)));
     for (key, material) in used {
         if !material.is_empty() && !materials.contains(&material.as_str()) {
             unknown_name(root, &key, material, "material", &materials);
@@ -69,10 +71,11 @@ fn check_materials(root: &mut Report, case: &Case) {
 
 /// Parts and contacts of analyses of real modes.
 fn check_modes(root: &mut Report, case: &Case) {
-    let parts: Vec<&str> = case.shell.keys().chain(case.bar.keys()).map(String::as_str).collect();
+    let parts = case.shell.keys().chain(case.bar.keys()).chain(case.solid.keys());
+    let parts: Vec<&str> = parts.map(String::as_str).collect();
     for (name, analysis) in &case.modes {
         for part in analysis.parts.iter().filter(|p| !parts.contains(&p.as_str())) {
-            unknown_name(root, &format!("modes.{}.parts", dotted(name)), part, "shell or bar", &parts);
+            unknown_name(root, &format!("modes.{}.parts", dotted(name)), part, "shell, bar or solid", &parts);
         }
         if analysis.contact == ContactState::Closed && case.contact.is_empty() {
             root.fault(
@@ -175,6 +178,7 @@ fn check_matrices(root: &mut Report, case: &Case) {
         ("material", !case.material.is_empty()),
         ("shell", !case.shell.is_empty()),
         ("bar", !case.bar.is_empty()),
+        ("solid", !case.solid.is_empty()),
         ("mass", !case.mass.is_empty()),
         ("spring", !case.spring.is_empty()),
         ("rigid", !case.rigid.is_empty()),

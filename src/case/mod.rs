@@ -39,7 +39,7 @@ pub use frf::{FrfAnalysis, FrfContact, FrfQuantity, FrfSolution, MotionAt, Unive
 pub use matrices::{Factor, Matrices, MatrixTerm};
 pub use measured::{MeasuredData, Transform};
 pub use mesh::{AnnulusMesh, LengthUnit, MeshSource, PlateMesh, RigMesh};
-pub use model::{Bar, Force, Held, Mass, Profile, Rigid, Shell, SpringSet, StructureDamping};
+pub use model::{Bar, Force, Held, Mass, Profile, Rigid, Shell, Solid, SpringSet, StructureDamping};
 pub(crate) use parameter::path_matches;
 pub use sound::{AirChoice, Microphone, ON_AXIS, SoundAnalysis};
 pub use test_file::read_test;
@@ -87,6 +87,8 @@ declare! {
         pub shell: BTreeMap<String, Shell> = key::named(),
         /// Bars by region.
         pub bar: BTreeMap<String, Bar> = key::named(),
+        /// Solids by region.
+        pub solid: BTreeMap<String, Solid> = key::named(),
         /// Concentrated masses by name.
         pub mass: BTreeMap<String, Mass> = key::named(),
         /// Springs with dashpots by name.

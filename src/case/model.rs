@@ -1,4 +1,4 @@
-//! `[shell]`, `[bar]`, `[mass]`, `[spring]`, `[rigid]`, `[support]`, `[force]`, `[damping]`: the structure.
+//! `[shell]`, `[bar]`, `[solid]`, `[mass]`, `[spring]`, `[rigid]`, `[support]`, `[force]`, `[damping]`: the structure.
 
 use crate::schema::units::*;
 use crate::schema::{Derivative, Invalidates, Report, declare, key, variants};
@@ -41,6 +41,16 @@ declare! {
         pub orientation: [f64; 3] = key::direction().or([0.0, 0.0, 1.0]),
         /// Its section.
         pub profile: Profile = key::flat(),
+    }
+}
+
+declare! {
+    /// A solid.
+    pub struct Solid {
+        /// Material by name.
+        pub material: String = key::name("the name of a material"),
+        /// Takes 4-node tetrahedra and 5-node pyramids, too, which are far too stiff in bending and shear (locking).
+        pub allow_locking: bool = key::flag(false),
     }
 }
 

@@ -5,7 +5,7 @@ use super::regions::Regions;
 use crate::case::{Case, ModesAnalysis};
 use crate::error::{Fault, Faults, Result};
 use crate::mesh::Cell;
-use crate::structure::{Bar, Model, Part, PointMass, Shell, Spring, Support};
+use crate::structure::{Bar, Model, Part, PointMass, Shell, Solid, Spring, Support};
 
 /// The structure of the whole case.
 ///
@@ -29,6 +29,12 @@ pub fn whole_model(case: &Case, regions: &Regions) -> Result<Model> {
         let (material, section) = (case.material[&bar.material], bar.profile.section());
         let bar = Bar { material, section, orientation: bar.orientation };
         model.parts.push(Part::new(name, lines.unwrap_or_default(), bar));
+    }
+    for (name, solid) in &case.solid {
+        let place = format!("`solid.{name}`");
+        let cells = faults.take(regions.solids(name, solid.allow_locking, &place));
+        let material = case.material[&solid.material];
+        model.parts.push(Part::new(name, cells.unwrap_or_default(), Solid { material }));
     }
     for (name, mass) in &case.mass {
         for node in faults.take(regions.nodes(&mass.on, &format!("`mass.{name}.on`"))).unwrap_or_default() {

@@ -11,7 +11,7 @@ use crate::case::{Case, Matrices};
 use crate::equilibrium::SteadyOptions;
 use crate::error::{Faults, Result};
 use crate::linalg::Engine;
-use crate::mesh::Mesh;
+use crate::mesh::{Cell, Mesh};
 use crate::modal::Disc;
 use crate::results::{Geometry, ModelSize};
 use crate::structure::{Assembled, Model, Part, assemble};
@@ -111,28 +111,21 @@ impl<'a> Prepared<'a> {
 
     /// Nodes and elements for pictures and ParaView.
     pub fn geometry(&self) -> Geometry {
-        let mut geometry = Geometry { nodes: self.model.nodes.clone(), ..Geometry::default() };
-        let mut add = |name: &str, elements: Vec<Vec<usize>>| {
-            geometry.parts.push(name.to_string());
-            geometry.part_of.extend(vec![geometry.parts.len() - 1; elements.len()]);
-            geometry.elements.extend(elements);
-        };
-        for part in &self.model.parts {
-            add(&part.name, part.cells.iter().map(|cell| cell.nodes().to_vec()).collect());
-        }
+        let nodes = &self.model.nodes;
+        let points = |nodes: Vec<usize>| nodes.into_iter().map(Cell::point).collect::<Vec<_>>();
         if self.case.matrices.is_some() {
-            if self.model.nodes.is_empty() {
-                geometry.nodes = vec![[0.0; 3]; self.assembled.dofs.n_nodes()];
-            } else {
-                add("nodes", (0..self.model.nodes.len()).map(|n| vec![n]).collect());
-            }
-            return geometry;
+            return match nodes.len() {
+                0 => Geometry::new(vec![[0.0; 3]; self.assembled.dofs.n_nodes()], Vec::new()),
+                n => Geometry::new(nodes.clone(), vec![("nodes".into(), points((0..n).collect()))]),
+            };
         }
+        let mut parts: Vec<(String, Vec<Cell>)> =
+            self.model.parts.iter().map(|part| (part.name.clone(), part.cells.clone())).collect();
         for name in self.case.mass.keys().filter(|_| self.case.mesh.is_none()) {
-            let node = self.regions.nodes(&self.case.mass[name].on, "").unwrap_or_default();
-            add(name, node.into_iter().map(|n| vec![n]).collect());
+            let own = self.regions.nodes(&self.case.mass[name].on, "").unwrap_or_default();
+            parts.push((name.clone(), points(own)));
         }
-        geometry
+        Geometry::new(nodes.clone(), parts)
     }
 
     /// Two unit vectors of each pair, for pictures: where the load presses the body, and where the counter-body moves.

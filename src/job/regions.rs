@@ -2,7 +2,7 @@
 
 use crate::case::{Case, MeshSource};
 use crate::error::{Error, Fault, Faults, Result, nearest};
-use crate::mesh::{Cell, Mesh, Region, made_of};
+use crate::mesh::{Cell, CellKind, Mesh, Region, made_of};
 use crate::schema::dotted;
 
 /// A mesh whose regions are looked up by name, with a fault that lists the existing ones.
@@ -15,8 +15,8 @@ pub struct Regions {
 }
 
 /// What to do where a plate is meshed as a solid.
-const NOT_SOLID: &str = "Plates are meshed as mid-surfaces: make the mid-surface a surface of the geometry and mesh that \
-                         (of a solid `gmsh -2` meshes the skin, which is something else)";
+const NOT_SOLID: &str = "A region of solids is a [solid]; plates are meshed as mid-surfaces: make the mid-surface a surface of the \
+                         geometry and mesh that (of a solid `gmsh -2` meshes the skin, which is something else)";
 
 fn kind(region: &Region) -> &'static str {
     made_of(region.dimension)
@@ -150,19 +150,39 @@ impl Regions {
         }
     }
 
+    /// The region `name`, which must have `dimension`.
+    fn region_of(&self, name: &str, dimension: usize, place: &str) -> Result<&Region> {
+        let region = self.region(name, place)?;
+        if region.dimension == dimension {
+            return Ok(region);
+        }
+        let found = format!("region \"{name}\" of {}", kind(region));
+        let fault = Fault::new(place, found, format!("a region of {}", made_of(dimension)));
+        Err(Error::input(fault.with_help(if region.dimension == 3 { NOT_SOLID } else { "" })))
+    }
+
+    /// The solids of region `name`; kinds that lock only where that is allowed.
+    pub fn solids(&self, name: &str, allow_locking: bool, place: &str) -> Result<Vec<Cell>> {
+        let region = self.region_of(name, 3, place)?;
+        let locks = |kind: CellKind| matches!(kind, CellKind::Tetrahedron4 | CellKind::Pyramid5);
+        let mut stiff = region.elements.iter().filter(|e| locks(self.mesh.elements[**e].kind()));
+        if let Some(first) = stiff.next().filter(|_| !allow_locking) {
+            let found = format!(
+                "region \"{name}\" with {} elements that are far too stiff in bending (locking), the first element {}, a {}",
+                1 + stiff.count(),
+                self.mesh.element_place(*first),
+                self.mesh.elements[*first].kind().table().name
+            );
+            let fault = Fault::new(place, found, "solids of second order, or hexahedra and wedges");
+            let help = "Mesh with 10-node tetrahedra: `gmsh -3 -order 2 model.geo -o model.msh`; `allow_locking = true` takes these";
+            return Err(Error::input(fault.with_help(help)));
+        }
+        Ok(region.elements.iter().map(|e| self.mesh.elements[*e].clone()).collect())
+    }
+
     /// The elements of region `name`, which must have `dimension` and be of first order.
     pub fn elements(&self, name: &str, dimension: usize, place: &str) -> Result<Vec<Cell>> {
-        let region = self.region(name, place)?;
-        if region.dimension != dimension {
-            return Err(Error::input(
-                Fault::new(
-                    place,
-                    format!("region \"{name}\" of {}", kind(region)),
-                    format!("a region of {}", made_of(dimension)),
-                )
-                .with_help(if region.dimension == 3 { NOT_SOLID } else { "" }),
-            ));
-        }
+        let region = self.region_of(name, dimension, place)?;
         let higher = region.elements.iter().filter(|e| !self.mesh.elements[**e].kind().is_first_order());
         if let Some(first) = higher.clone().next() {
             let found = format!(

@@ -135,8 +135,8 @@ fn nodes_of(prepared: &Prepared<'_>, analysis: &ModesAnalysis) -> Vec<usize> {
         return Vec::new();
     }
     let own = |part: &usize| analysis.parts.is_empty() || analysis.parts.contains(&geometry.parts[*part]);
-    let elements = geometry.elements.iter().zip(&geometry.part_of).filter(|(_, part)| own(part));
-    let mut nodes: Vec<usize> = elements.flat_map(|(element, _)| element.iter().copied()).collect();
+    let cells = geometry.cells.iter().zip(&geometry.part_of_cell).filter(|(_, part)| own(part));
+    let mut nodes: Vec<usize> = cells.flat_map(|(cell, _)| cell.nodes().iter().copied()).collect();
     nodes.sort_unstable();
     nodes.dedup();
     nodes

@@ -22,8 +22,11 @@ pub(super) struct PlateView {
 }
 
 impl PlateView {
-    /// The faces of `part`; `None` when it has none or they face no common side.
+    /// The faces of `part`; `None` when it has none, they face no common side, or are those of a solid.
     pub(super) fn new(geometry: &Geometry, part: usize) -> Option<Self> {
+        if geometry.is_solid(part) {
+            return None;
+        }
         let faces =
             geometry.elements.iter().zip(&geometry.part_of).filter(|(e, p)| **p == part && e.len() >= 3);
         let corners: Vec<[usize; 3]> =

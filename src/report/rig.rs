@@ -255,6 +255,7 @@ fn draw_axes(sheet: &mut Sheet, view: &View, fit: &PlacedView) {
 mod tests {
     use super::*;
     use crate::job::sample;
+    use crate::mesh::Cell;
 
     #[test]
     fn parts_points_and_arrows_are_drawn() {
@@ -286,12 +287,8 @@ mod tests {
 
     #[test]
     fn an_outline_is_what_no_neighbour_shares() {
-        let geometry = Geometry {
-            nodes: vec![[0.0; 3]; 4],
-            elements: vec![vec![0, 1, 2], vec![0, 2, 3]],
-            part_of: vec![0, 0],
-            parts: vec!["plate".into()],
-        };
+        let faces = vec![Cell::triangle([0, 1, 2]), Cell::triangle([0, 2, 3])];
+        let geometry = Geometry::new(vec![[0.0; 3]; 4], vec![("plate".into(), faces)]);
         let sides = outlines(&geometry);
         assert_eq!(sides.values().map(Vec::len).sum::<usize>(), 4);
         assert!(!sides.values().flatten().any(|side| *side == [0, 2]));

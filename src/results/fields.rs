@@ -11,6 +11,7 @@ use super::folder::{own, refusal};
 use super::hdf5::{attribute, rows};
 use super::{FieldSnapshot, Fields, NodalField};
 use crate::error::{Error, Result};
+use crate::mesh::Cell;
 use hdf5::Group;
 use hdf5::types::FixedAscii;
 use ndarray::{Array2, s};
@@ -89,21 +90,22 @@ fn create(file: &hdf5::File, fields: &Fields) -> hdf5::Result<()> {
     let list = |group: &Group, name: &str, values: &[i64]| {
         group.new_dataset::<i64>().shape(values.len()).create(name)?.write(values)
     };
-    let connectivity: Vec<i64> = geometry.elements.iter().flatten().map(|node| *node as i64).collect();
+    let connectivity: Vec<i64> =
+        geometry.cells.iter().flat_map(Cell::to_vtk).map(|node| node as i64).collect();
     let mut offsets = vec![0_i64];
-    offsets.extend(geometry.elements.iter().scan(0, |end, nodes| {
-        *end += nodes.len() as i64;
+    offsets.extend(geometry.cells.iter().scan(0, |end, cell| {
+        *end += cell.nodes().len() as i64;
         Some(*end)
     }));
     list(&root, "NumberOfPoints", &[geometry.nodes.len() as i64])?;
-    list(&root, "NumberOfCells", &[geometry.elements.len() as i64])?;
+    list(&root, "NumberOfCells", &[geometry.cells.len() as i64])?;
     list(&root, "NumberOfConnectivityIds", &[connectivity.len() as i64])?;
     list(&root, "Connectivity", &connectivity)?;
     list(&root, "Offsets", &offsets)?;
     root.new_dataset_builder().with_data(&rows(&geometry.nodes)).create("Points")?;
-    let types: Vec<u8> = geometry.elements.iter().map(|nodes| cell_type(nodes.len())).collect();
+    let types: Vec<u8> = geometry.cells.iter().map(|cell| cell.kind().table().vtk).collect();
     root.new_dataset_builder().with_data(&types).create("Types")?;
-    let part: Vec<i32> = geometry.part_of.iter().map(|part| *part as i32).collect();
+    let part: Vec<i32> = geometry.part_of_cell.iter().map(|part| *part as i32).collect();
     root.create_group("CellData")?.new_dataset_builder().with_data(&part).create("part")?;
     let motion = root.create_group("PointData")?;
     for name in ARRAYS {
@@ -125,16 +127,6 @@ fn create(file: &hdf5::File, fields: &Fields) -> hdf5::Result<()> {
     let offsets = steps.create_group("PointDataOffsets")?;
     let begins: Vec<i64> = (0..fields.count).map(|k| (k * geometry.nodes.len()) as i64).collect();
     ARRAYS.iter().try_for_each(|name| list(&offsets, name, &begins))
-}
-
-/// VTK's numbers of vertex, line, triangle and quadrilateral.
-fn cell_type(nodes: usize) -> u8 {
-    match nodes {
-        1 => 1,
-        2 => 3,
-        3 => 5,
-        _ => 9,
-    }
 }
 
 #[cfg(test)]

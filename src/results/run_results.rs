@@ -3,6 +3,7 @@
 use super::provenance::Provenance;
 use super::record::InputFile;
 use super::records::{AnalysisRecord, Records};
+use crate::mesh::{Cell, outer_faces};
 
 /// Everything a run produced, as plain data for the writers and the report.
 #[derive(Debug, Default)]
@@ -73,12 +74,54 @@ pub struct ModelSize {
 pub struct Geometry {
     /// Coordinates \[m\].
     pub nodes: Vec<[f64; 3]>,
-    /// Node indices of every element: 1 (point), 2 (bar), 3 or 4 (shell).
+    /// Cells of every part.
+    pub cells: Vec<Cell>,
+    /// The part each cell belongs to, an index into `parts`.
+    pub part_of_cell: Vec<usize>,
+    /// What pictures show, points, lines, triangles and quadrilaterals by their nodes: the cells themselves, of solids their skin, faces of
+    /// second order in pieces.
     pub elements: Vec<Vec<usize>>,
-    /// The part each element belongs to, an index into `parts`.
+    /// The part each of these belongs to.
     pub part_of: Vec<usize>,
     /// The parts' names.
     pub parts: Vec<String>,
+}
+
+impl Geometry {
+    /// That of parts, each with its name and its cells on `nodes`.
+    pub fn new(nodes: Vec<[f64; 3]>, parts: Vec<(String, Vec<Cell>)>) -> Self {
+        let mut geometry = Geometry { nodes, ..Geometry::default() };
+        for (part, (name, cells)) in parts.into_iter().enumerate() {
+            let drawn: Vec<Vec<usize>> = drawn(&cells);
+            geometry.part_of.extend(vec![part; drawn.len()]);
+            geometry.elements.extend(drawn);
+            geometry.part_of_cell.extend(vec![part; cells.len()]);
+            geometry.cells.extend(cells);
+            geometry.parts.push(name);
+        }
+        geometry
+    }
+
+    /// Whether a part is made of solids.
+    pub fn is_solid(&self, part: usize) -> bool {
+        let own = self.part_of_cell.iter().position(|own| *own == part);
+        own.is_some_and(|first| self.cells[first].dimension() == 3)
+    }
+}
+
+/// What pictures show of cells.
+fn drawn(cells: &[Cell]) -> Vec<Vec<usize>> {
+    let (solids, others): (Vec<&Cell>, Vec<&Cell>) = cells.iter().partition(|cell| cell.dimension() == 3);
+    let skin = outer_faces(solids.into_iter());
+    let faces = others.into_iter().chain(&skin);
+    faces
+        .flat_map(|cell| {
+            cell.kind()
+                .pieces()
+                .iter()
+                .map(|piece| piece.iter().map(|k| cell.nodes()[usize::from(*k)]).collect())
+        })
+        .collect()
 }
 
 /// A displacement of every node: (ux, uy, uz, rx, ry, rz) \[m, rad\] in the order of [`Geometry::nodes`].

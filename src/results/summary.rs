@@ -9,6 +9,7 @@ use super::record::InputFile;
 use super::{Geometry, ModelSize, RunResults, write_result};
 use crate::dataset::{Describe, Dimension, Group, Table, Values, Variable, column};
 use crate::error::Result;
+use crate::mesh::Cell;
 use serde_json::Value;
 use std::path::Path;
 
@@ -127,15 +128,15 @@ impl Geometry {
     fn group(&self) -> Group<'_> {
         let whole = |numbers: Vec<usize>| Values::Integers(numbers.into_iter().map(|n| n as i64).collect());
         let nodes = vec![Dimension::indexed("node", self.nodes.len()), Dimension::axes()];
-        let flat: Vec<usize> = self.elements.iter().flatten().copied().collect();
+        let flat: Vec<usize> = self.cells.iter().flat_map(Cell::nodes).copied().collect();
         let mut offsets = vec![0];
-        offsets.extend(self.elements.iter().scan(0, |end, element| {
-            *end += element.len();
+        offsets.extend(self.cells.iter().scan(0, |end, cell| {
+            *end += cell.nodes().len();
             Some(*end)
         }));
         let entries = vec![Dimension::indexed("entry", flat.len())];
         let ends = vec![Dimension::indexed("offset", offsets.len())];
-        let elements = vec![Dimension::indexed("element", self.elements.len())];
+        let elements = vec![Dimension::indexed("element", self.cells.len())];
         let parts = Dimension::indexed("part", self.parts.len());
         let story = "element e has the entries offsets[e] to offsets[e + 1] of element_nodes";
         let coordinates = Values::RealRows(Box::new(|node| self.nodes[node].to_vec()));
@@ -154,7 +155,14 @@ impl Geometry {
                 "1",
                 "part of every element",
                 elements,
-                whole(self.part_of.clone()),
+                whole(self.part_of_cell.clone()),
+            ))
+            .with(Variable::new(
+                "element_kind",
+                "1",
+                "kind of every element, by its number in VTK files",
+                vec![Dimension::indexed("element", self.cells.len())],
+                whole(self.cells.iter().map(|cell| usize::from(cell.kind().table().vtk)).collect()),
             ))
             .with(Variable::texts("part_names", "names of the parts", parts, self.parts.clone()))
     }

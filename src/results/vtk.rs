@@ -11,6 +11,7 @@ use super::{
 };
 use crate::error::Result;
 use crate::linalg::c64;
+use crate::mesh::Cell;
 use std::path::Path;
 use vtkio::model::{
     Attribute, Attributes, ByteOrder, CellType, Cells, DataSet, UnstructuredGridPiece, Version,
@@ -108,7 +109,7 @@ fn write_grid(dir: &Path, name: &str, geometry: &Geometry, vectors: Vec<PointVec
 }
 
 fn write_arrays(dir: &Path, name: &str, geometry: &Geometry, point: Vec<Attribute>) -> Result<()> {
-    let part: Vec<i32> = geometry.part_of.iter().map(|p| *p as i32).collect();
+    let part: Vec<i32> = geometry.part_of_cell.iter().map(|p| *p as i32).collect();
     let data = Attributes {
         point,
         cell: vec![Attribute::DataArray(vtkio::model::DataArray::scalars("part", 1).with_data(part))],
@@ -131,20 +132,41 @@ fn flatten(values: &[[f64; 3]]) -> Vec<f64> {
     values.iter().flatten().copied().collect()
 }
 
+/// The type of a number in VTK files, one of those of the table of kinds.
+fn cell_type(number: u8) -> CellType {
+    use CellType::*;
+    const TYPES: [CellType; 18] = [
+        Vertex,
+        Line,
+        QuadraticEdge,
+        Triangle,
+        QuadraticTriangle,
+        Quad,
+        QuadraticQuad,
+        BiquadraticQuad,
+        Tetra,
+        QuadraticTetra,
+        Hexahedron,
+        QuadraticHexahedron,
+        TriquadraticHexahedron,
+        Wedge,
+        QuadraticWedge,
+        BiquadraticQuadraticWedge,
+        Pyramid,
+        QuadraticPyramid,
+    ];
+    TYPES.into_iter().find(|kind| *kind as u8 == number).unwrap_or(Vertex)
+}
+
 fn cells(geometry: &Geometry) -> Cells {
     let mut end = 0;
-    let offsets = geometry.elements.iter().map(|nodes| {
-        end += nodes.len() as u64;
+    let offsets = geometry.cells.iter().map(|cell| {
+        end += cell.nodes().len() as u64;
         end
     });
     let offsets = offsets.collect();
-    let connectivity = geometry.elements.iter().flatten().map(|node| *node as u64).collect();
-    let types = geometry.elements.iter().map(|nodes| match nodes.len() {
-        1 => CellType::Vertex,
-        2 => CellType::Line,
-        3 => CellType::Triangle,
-        _ => CellType::Quad,
-    });
+    let connectivity = geometry.cells.iter().flat_map(Cell::to_vtk).map(|node| node as u64).collect();
+    let types = geometry.cells.iter().map(|cell| cell_type(cell.kind().table().vtk));
     Cells { cell_verts: VertexNumbers::XML { connectivity, offsets }, types: types.collect() }
 }
 
@@ -177,9 +199,9 @@ mod tests {
         let results = sample::rig();
         write_vtk(dir.path(), &results).unwrap();
         let disc = read(&dir.path().join("modes_disc.vtu"));
-        assert_eq!(disc.cells.types.len(), results.geometry.elements.len());
+        assert_eq!(disc.cells.types.len(), results.geometry.cells.len());
         let IOBuffer::I32(part) = array(&disc.data.cell, "part") else { panic!("part is i32") };
-        assert!(part.iter().zip(&results.geometry.part_of).all(|(a, b)| *a as usize == *b));
+        assert!(part.iter().zip(&results.geometry.part_of_cell).all(|(a, b)| *a as usize == *b));
         let IOBuffer::F64(u) = array(&disc.data.point, "mode_03") else { panic!("modes are f64") };
         assert_eq!(u.len(), 3 * results.geometry.nodes.len());
         assert!(u.chunks(3).zip(&results.all::<NamedModes>()[0].shape(2)).all(|(a, b)| a == &b[..3]));

@@ -96,6 +96,14 @@ impl Cell {
         })
     }
 
+    /// Its nodes in the order of VTK files: there the first triangle of a 6-node wedge is seen from outside counter-clockwise.
+    pub fn to_vtk(&self) -> Vec<usize> {
+        match (self.kind, self.nodes()) {
+            (CellKind::Wedge6, &[a, b, c, d, e, f]) => vec![a, c, b, d, f, e],
+            (_, nodes) => nodes.to_vec(),
+        }
+    }
+
     /// The same cell whose nodes have other numbers.
     pub fn renumbered(&self, number: impl Fn(usize) -> usize) -> Cell {
         let mut cell = self.clone();

@@ -591,6 +591,22 @@ impl CellKind {
         list.into_iter().map(|(_, node)| node).collect()
     }
 
+    /// Points, lines, triangles and quadrilaterals of first order that it can be drawn by: itself, or pieces between its nodes; none of a
+    /// solid, whose sides are drawn.
+    pub fn pieces(self) -> &'static [&'static [u8]] {
+        match self {
+            Point1 => &[&[0]],
+            Line2 => &[&[0, 1]],
+            Line3 => &[&[0, 2], &[2, 1]],
+            Triangle3 => &[&[0, 1, 2]],
+            Triangle6 => &[&[0, 3, 5], &[3, 1, 4], &[5, 4, 2], &[3, 4, 5]],
+            Quadrilateral4 => &[&[0, 1, 2, 3]],
+            Quadrilateral8 => &[&[0, 4, 7], &[4, 1, 5], &[5, 2, 6], &[7, 6, 3], &[4, 5, 6, 7]],
+            Quadrilateral9 => &[&[0, 4, 8, 7], &[4, 1, 5, 8], &[8, 5, 2, 6], &[7, 8, 6, 3]],
+            _ => &[],
+        }
+    }
+
     /// Its name for several: `3-node triangles`.
     pub fn plural(self) -> String {
         match self.table().name {

@@ -20,19 +20,32 @@ fn key(face: &Cell) -> [usize; 4] {
     corners
 }
 
+/// The sides that one cell alone has, of cells with their numbers, in their order.
+fn outer_sides<'a>(cells: impl Iterator<Item = (usize, &'a Cell)>) -> Vec<Side> {
+    let mut all: Vec<(Side, [usize; 4])> = Vec::new();
+    let mut count: HashMap<[usize; 4], usize> = HashMap::new();
+    for (cell, sides) in cells.map(|(number, cell)| (number, cell.sides())) {
+        for (side, face) in sides.enumerate() {
+            let key = key(&face);
+            *count.entry(key).or_default() += 1;
+            all.push((Side { cell, side }, key));
+        }
+    }
+    all.into_iter().filter(|(_, key)| count[key] == 1).map(|(side, _)| side).collect()
+}
+
+/// The outer faces of solids, each seen from outside counter-clockwise, in the order of the cells.
+pub fn outer_faces<'a>(solids: impl Iterator<Item = &'a Cell>) -> Vec<Cell> {
+    let all: Vec<&Cell> = solids.collect();
+    let sides = outer_sides(all.iter().copied().enumerate());
+    sides.into_iter().filter_map(|Side { cell, side }| all[cell].sides().nth(side)).collect()
+}
+
 impl Mesh {
     /// The outer faces of the solids among `cells`, in the order of the cells.
     pub fn skin(&self, cells: impl IntoIterator<Item = usize>) -> Vec<Side> {
-        let mut all: Vec<(Side, [usize; 4])> = Vec::new();
-        let mut count: HashMap<[usize; 4], usize> = HashMap::new();
-        for cell in cells.into_iter().filter(|cell| self.elements[*cell].dimension() == 3) {
-            for (side, face) in self.elements[cell].sides().enumerate() {
-                let key = key(&face);
-                *count.entry(key).or_default() += 1;
-                all.push((Side { cell, side }, key));
-            }
-        }
-        all.into_iter().filter(|(_, key)| count[key] == 1).map(|(side, _)| side).collect()
+        let cells = cells.into_iter().map(|cell| (cell, &self.elements[cell]));
+        outer_sides(cells.filter(|(_, cell)| cell.dimension() == 3))
     }
 
     /// A face of a solid as a cell of its own, seen from outside counter-clockwise.
