@@ -6,7 +6,7 @@ use super::format::{given, rounded};
 use super::html::{described, whole};
 use super::section::{Picture, ReportSection};
 use super::svg::{Sheet, SvgPoint, fill, ink, outlined, stroke};
-use super::view::{PlacedView, View, ViewVector, along, dot};
+use super::view::{PlacedView, View, ViewVector, along, cross, dot, unit};
 use crate::results::{Geometry, RunResults, SteadyResult};
 use std::collections::BTreeMap;
 
@@ -55,16 +55,23 @@ fn picture(results: &RunResults) -> Option<Picture> {
     Some(Picture { file: "rig".into(), caption, svg: described(&whole(&sheet.finish()), &seen) })
 }
 
+/// Faces that meet at more than this angle \[rad\] have an edge.
+const SHARP: f64 = 0.6;
+
 /// Elements from the farthest to the nearest (the painter's algorithm); stretches of one part share a path.
 fn draw_elements(sheet: &mut Sheet, geometry: &Geometry, view: &View, fit: &PlacedView) {
     let centre = |element: &[usize]| {
         let sum = element.iter().fold([0.0; 3], |sum, k| along(sum, 1.0, geometry.nodes[*k]));
         sum.map(|c| c / element.len().max(1) as f64)
     };
+    let solid: Vec<bool> = (0..geometry.parts.len()).map(|part| geometry.is_solid(part)).collect();
+    // What looks away from the viewer is behind the rest of its solid.
+    let visible = |k: usize| !solid[geometry.part_of[k]] || dot(normal(geometry, k), view.towards) > 0.0;
+    let seen: Vec<usize> = (0..geometry.elements.len()).filter(|k| visible(*k)).collect();
     let mut order: Vec<(f64, usize)> =
-        geometry.elements.iter().enumerate().map(|(k, e)| (view.nearness(centre(e)), k)).collect();
+        seen.iter().map(|k| (view.nearness(centre(&geometry.elements[*k])), *k)).collect();
     order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-    let outline = outlines(geometry);
+    let outline = outlines(geometry, &seen);
     let pixels = |element: &[usize]| -> Vec<SvgPoint> {
         element.iter().map(|k| fit.pixel(view.project(geometry.nodes[*k]))).collect()
     };
@@ -103,20 +110,33 @@ fn draw_elements(sheet: &mut Sheet, geometry: &Geometry, view: &View, fit: &Plac
     }
 }
 
-/// The sides of each face that no other face of its part shares.
-fn outlines(geometry: &Geometry) -> BTreeMap<usize, Vec<[usize; 2]>> {
-    let mut sides: BTreeMap<(usize, usize, usize), (usize, usize)> = BTreeMap::new();
-    for (k, element) in geometry.elements.iter().enumerate().filter(|(_, e)| e.len() >= 3) {
+/// The sum of the normals of the triangles of a face, twice its area long.
+fn normal(geometry: &Geometry, element: usize) -> ViewVector {
+    let nodes = &geometry.elements[element];
+    let at = |k: usize| geometry.nodes[nodes[k]];
+    let turned = |k: usize| cross(along(at(k - 1), -1.0, at(0)), along(at(k), -1.0, at(0)));
+    (2..nodes.len()).fold([0.0; 3], |sum, k| along(sum, 1.0, turned(k)))
+}
+
+/// The sides of each face among those that are `seen` that no other of its part shares, or that are sharp edges.
+fn outlines(geometry: &Geometry, seen: &[usize]) -> BTreeMap<usize, Vec<[usize; 2]>> {
+    let mut sides: BTreeMap<(usize, usize, usize), Vec<usize>> = BTreeMap::new();
+    for k in seen.iter().copied().filter(|k| geometry.elements[*k].len() >= 3) {
+        let element = &geometry.elements[k];
         for (i, a) in element.iter().enumerate() {
             let b = element[(i + 1) % element.len()];
-            let entry = sides.entry((geometry.part_of[k], *a.min(&b), *a.max(&b))).or_insert((k, 0));
-            entry.1 += 1;
+            sides.entry((geometry.part_of[k], *a.min(&b), *a.max(&b))).or_default().push(k);
         }
     }
+    let sharp = |a: usize, b: usize| {
+        let [a, b] = [a, b].map(|k| unit(normal(geometry, k)).unwrap_or_default());
+        dot(a, b).abs() < SHARP.cos()
+    };
     let mut outlines: BTreeMap<usize, Vec<[usize; 2]>> = BTreeMap::new();
-    for ((_, a, b), (k, uses)) in sides {
-        if uses == 1 {
-            outlines.entry(k).or_default().push([a, b]);
+    for ((_, a, b), faces) in sides {
+        if matches!(faces[..], [_]) || matches!(faces[..], [f, g] if sharp(f, g)) {
+            // With the face that is drawn last.
+            outlines.entry(faces[faces.len() - 1]).or_default().push([a, b]);
         }
     }
     outlines
@@ -289,7 +309,7 @@ mod tests {
     fn an_outline_is_what_no_neighbour_shares() {
         let faces = vec![Cell::triangle([0, 1, 2]), Cell::triangle([0, 2, 3])];
         let geometry = Geometry::new(vec![[0.0; 3]; 4], vec![("plate".into(), faces)]);
-        let sides = outlines(&geometry);
+        let sides = outlines(&geometry, &[0, 1]);
         assert_eq!(sides.values().map(Vec::len).sum::<usize>(), 4);
         assert!(!sides.values().flatten().any(|side| *side == [0, 2]));
     }

@@ -1,8 +1,9 @@
 //! Summary of a mesh in a few lines.
 
 use super::check::{Diagnosis, bounds, count_pieces, diagnose};
+use super::jacobian::measure;
 use super::quality::{face_shape, minus, norm};
-use super::{CellKind, Mesh, made_of};
+use super::{Cell, CellKind, Mesh, made_of};
 use std::fmt;
 
 /// Summary of a mesh.
@@ -35,7 +36,7 @@ pub struct RegionInfo {
     pub n_nodes: usize,
     /// Pieces that share no node.
     pub pieces: usize,
-    /// Its length \[m\] or area \[m²\]; 0 for points.
+    /// Its length \[m\], area \[m²\] or volume \[m³\]; 0 for points.
     pub measure: f64,
     /// Shortest and longest edge \[m\]; zero for points.
     pub edges: [f64; 2],
@@ -60,7 +61,7 @@ impl Info {
 
 fn region_infos(mesh: &Mesh) -> Vec<RegionInfo> {
     let info = |region: &super::Region| {
-        let mut measure = 0.0;
+        let mut whole = 0.0;
         let mut edges = [f64::INFINITY, 0.0];
         for e in &region.elements {
             let element = &mesh.elements[*e];
@@ -69,10 +70,14 @@ fn region_infos(mesh: &Mesh) -> Vec<RegionInfo> {
                     let length = norm(minus(mesh.nodes[*i], mesh.nodes[*j]));
                     Some((length, [length; 2]))
                 }
-                _ => face_shape(mesh, element).map(|s| (s.area, s.edges)),
+                _ if element.kind().is_first_order() && element.dimension() == 2 => {
+                    face_shape(mesh, element).map(|s| (s.area, s.edges))
+                }
+                _ if element.dimension() > 0 => Some((measure(mesh, element), edge_lengths(mesh, element))),
+                _ => None,
             };
             if let Some((size, [short, long])) = shape {
-                measure += size;
+                whole += size;
                 edges = [edges[0].min(short), edges[1].max(long)];
             }
         }
@@ -82,11 +87,22 @@ fn region_infos(mesh: &Mesh) -> Vec<RegionInfo> {
             n_elements: region.elements.len(),
             n_nodes: mesh.region_nodes(region).len(),
             pieces: count_pieces(mesh, region),
-            measure,
+            measure: whole,
             edges: if edges[1] > 0.0 { edges } else { [0.0; 2] },
         }
     };
     mesh.regions.iter().map(info).collect()
+}
+
+/// Shortest and longest straight line between two corners of an edge \[m\].
+fn edge_lengths(mesh: &Mesh, cell: &Cell) -> [f64; 2] {
+    let length = |edge: Cell| edge.ends().map_or(0.0, |[i, j]| norm(minus(mesh.nodes[i], mesh.nodes[j])));
+    let edges: Vec<Cell> = match cell.dimension() {
+        3 => cell.sides().flat_map(|side| side.sides().collect::<Vec<_>>()).collect(),
+        2 => cell.sides().collect(),
+        _ => vec![cell.clone()],
+    };
+    edges.into_iter().map(length).fold([f64::INFINITY, 0.0], |[low, high], l| [low.min(l), high.max(l)])
 }
 
 impl fmt::Display for Info {
@@ -103,7 +119,7 @@ impl fmt::Display for Info {
         let width = self.regions.iter().map(|r| r.name.chars().count()).max().unwrap_or(0).max(6);
         writeln!(
             f,
-            "{:width$}  kind     elements    nodes  pieces  length or area     edges (mm)",
+            "{:width$}  kind     elements    nodes  pieces  length, area or volume     edges (mm)",
             "region"
         )?;
         for r in &self.regions {
@@ -111,6 +127,7 @@ impl fmt::Display for Info {
             let measure = match r.dimension {
                 1 => format!("{:.3} mm", 1e3 * r.measure),
                 2 => format!("{:.2} mm²", 1e6 * r.measure),
+                3 => format!("{:.2} mm³", 1e9 * r.measure),
                 _ => String::new(),
             };
             let edges = if r.dimension > 0 {
@@ -119,7 +136,7 @@ impl fmt::Display for Info {
                 String::new()
             };
             let line = format!(
-                "{:width$}  {kind:7} {:9} {:8} {:7}  {measure:>14}  {edges:>13}",
+                "{:width$}  {kind:7} {:9} {:8} {:7}  {measure:>22}  {edges:>13}",
                 r.name, r.n_elements, r.n_nodes, r.pieces
             );
             writeln!(f, "{}", line.trim_end())?;
@@ -137,7 +154,7 @@ impl fmt::Display for Info {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::generate::{Faces, structured_plate};
+    use crate::generate::{Faces, structured_box, structured_plate};
 
     #[test]
     fn the_sums_of_a_plate_are_its_area_and_perimeter() {
@@ -151,6 +168,11 @@ mod tests {
         assert!((info.regions[1..].iter().map(|r| r.measure).sum::<f64>() - 6.0).abs() < 1e-14);
         assert_eq!(info.regions[0].edges, [0.5, 0.5f64.hypot(0.5)]);
         assert!((info.smallest_angle_deg.unwrap() - 45.0).abs() < 1e-12);
+        let solid = structured_box(CellKind::Tetrahedron10, [2.0, 1.0, 0.5], [4, 2, 1]).unwrap();
+        let info_of_solid = Info::of(&solid);
+        assert!((info_of_solid.regions[0].measure - 1.0).abs() < 1e-14);
+        assert_eq!(info_of_solid.regions[0].edges, [0.5, 0.75_f64.sqrt()]);
+        assert!((info_of_solid.regions[1..].iter().map(|r| r.measure).sum::<f64>() - 7.0).abs() < 1e-13);
         let text = info.to_string();
         assert!(text.contains("15 nodes") && text.contains("plate_edge_x_min"), "{text}");
     }

@@ -1,6 +1,6 @@
 //! Cells that are turned inside out: the sign of the Jacobian at every node.
 
-use super::quality::{cross, dot};
+use super::quality::{cross, dot, norm};
 use super::{Cell, Mesh};
 
 /// How near to its apex a pyramid is looked at, as a share of the way from its centre: there the Jacobian has no value.
@@ -17,15 +17,7 @@ pub(super) fn keeps_orientation(mesh: &Mesh, cell: &Cell) -> bool {
     let corners = &kind.table().corners;
     let centre: [f64; 3] =
         std::array::from_fn(|k| corners.iter().map(|c| c[k]).sum::<f64>() / corners.len() as f64);
-    let tangents = |at: [f64; 3]| {
-        let mut tangents = [[0.0; 3]; 3];
-        for (node, gradient) in cell.nodes().iter().zip(kind.shape_gradients(at)) {
-            for (tangent, slope) in tangents.iter_mut().zip(gradient) {
-                (0..3).for_each(|c| tangent[c] += slope * mesh.nodes[*node][c]);
-            }
-        }
-        tangents
-    };
+    let tangents = |at: [f64; 3]| tangents(mesh, cell, at);
     let size = |at: [f64; 3], middle: &[[f64; 3]; 3]| {
         let [a, b, c] = tangents(at);
         match kind.dimension() {
@@ -39,6 +31,31 @@ pub(super) fn keeps_orientation(mesh: &Mesh, cell: &Cell) -> bool {
     let near = |k: usize| std::array::from_fn(|c| centre[c] + NEAR_APEX * (places[k][c] - centre[c]));
     (0..places.len()).all(|k| size(if apex(k) { near(k) } else { places[k] }, &middle) > 0.0)
         && size(centre, &middle) > 0.0
+}
+
+/// ∫ dl, dA or dV of a cell \[m, m², m³\].
+pub(super) fn measure(mesh: &Mesh, cell: &Cell) -> f64 {
+    let kind = cell.kind();
+    let size = |at: [f64; 3]| {
+        let [a, b, c] = tangents(mesh, cell, at);
+        match kind.dimension() {
+            3 => dot(cross(a, b), c),
+            2 => norm(cross(a, b)),
+            _ => norm(a),
+        }
+    };
+    kind.quadrature(5).into_iter().map(|point| point.weight * size(point.at)).sum()
+}
+
+/// ∂x/∂ξ, ∂x/∂η, ∂x/∂ζ.
+fn tangents(mesh: &Mesh, cell: &Cell, at: [f64; 3]) -> [[f64; 3]; 3] {
+    let mut tangents = [[0.0; 3]; 3];
+    for (node, gradient) in cell.nodes().iter().zip(cell.kind().shape_gradients(at)) {
+        for (tangent, slope) in tangents.iter_mut().zip(gradient) {
+            (0..3).for_each(|c| tangent[c] += slope * mesh.nodes[*node][c]);
+        }
+    }
+    tangents
 }
 
 #[cfg(test)]
