@@ -1,4 +1,4 @@
-//! Contact points from the geometry of two plates.
+//! Contact points from the geometry of two bodies.
 
 use super::projection::{FaceGrid, Foot, FootShare, Vector, add, area_vector, cross, dot, scale, subtract};
 use crate::error::{Error, Fault, Faults, Result};
@@ -10,9 +10,9 @@ use crate::structure::elements::{WeightedTriangle, split_face};
 use crate::system::ContactPoint;
 use std::collections::BTreeSet;
 
-/// Two plates that may touch.
+/// Two plates or solids that may touch.
 ///
-/// The *counter-body* (slider) offers the face that looks towards the body, half its thickness from its mid-surface;
+/// The *counter-body* (slider) offers the faces that look towards the body, of a plate half its thickness from its mid-surface;
 /// **n** is the outward normal there. The *body* (disc) touches with nodes of its edge or of its face.
 #[derive(Debug, Clone, Copy)]
 pub struct Surfaces<'a> {
@@ -20,12 +20,14 @@ pub struct Surfaces<'a> {
     pub name: &'a str,
     /// Coordinates of all nodes \[m\].
     pub nodes: &'a [[f64; 3]],
-    /// The plate whose nodes touch.
+    /// The part whose nodes touch.
     pub body: &'a Part,
     /// Which of its nodes may touch, and how.
     pub side: ContactSide<'a>,
-    /// The plate whose faces are touched.
+    /// The part whose faces are touched.
     pub counter: &'a Part,
+    /// Those faces: cells of a plate, faces of a solid seen from outside counter-clockwise.
+    pub faces: &'a [Cell],
     /// The direction in which the counter-body slides past the body; its part across n is t₁.
     pub sliding_direction: [f64; 3],
     /// How many of the points are kept.
@@ -35,7 +37,7 @@ pub struct Surfaces<'a> {
 }
 
 impl<'a> Surfaces<'a> {
-    /// The pair `name` of two plates, of whose contact points those within 1 mm are kept, without travel.
+    /// The pair `name` of a body and a plate, of whose contact points those within 1 mm are kept, without travel.
     pub fn new(
         name: &'a str,
         nodes: &'a [[f64; 3]],
@@ -44,7 +46,17 @@ impl<'a> Surfaces<'a> {
         sliding_direction: [f64; 3],
     ) -> Self {
         let patch = ContactPatch::Reach(1e-3);
-        Surfaces { name, nodes, body, side, counter, sliding_direction, patch, stroke: 0.0 }
+        Surfaces {
+            name,
+            nodes,
+            body,
+            side,
+            counter,
+            faces: &counter.cells,
+            sliding_direction,
+            patch,
+            stroke: 0.0,
+        }
     }
 }
 
@@ -57,7 +69,7 @@ pub enum ContactSide<'a> {
     /// Lines on the edge of the plate, with one point a node at the middle of the thickness: the line contact of an
     /// infinitely thin rim, which knows no moment about the line.
     Middle(&'a [[usize; 2]]),
-    /// Faces of the plate (a pad). Every node carries one point, at h/2 towards the counter-body, with the node's
+    /// Faces of a plate or a solid (a pad). Every node carries one point, of a plate at h/2 towards the counter-body, with the node's
     /// tributary area \[m²\].
     Face(&'a [Cell]),
 }
@@ -94,7 +106,9 @@ pub fn pair_surfaces(surfaces: &Surfaces<'_>, reduce: &Reduce<'_>) -> Result<Vec
     let touching = touching_nodes(surfaces, &place("body"))?;
     let mean = touching.iter().fold([0.0; 3], |sum, t| add(sum, surfaces.nodes[t.node]));
     let mean = scale(1.0 / touching.len() as f64, mean);
-    let plate = FaceGrid::new(surfaces.nodes, &surfaces.counter.cells, mean).ok_or_else(|| {
+    // The faces of a solid look outwards; a plate has two sides.
+    let towards = surfaces.counter.as_shell().map(|_| mean);
+    let plate = FaceGrid::new(surfaces.nodes, surfaces.faces, towards).ok_or_else(|| {
         let found = "faces without area or turned against each other";
         Error::input(Fault::new(
             place("counter"),
@@ -204,13 +218,17 @@ fn touching_nodes(surfaces: &Surfaces<'_>, place: &str) -> Result<Vec<Touching>>
     }
     let mut normals = vec![[0.0; 3]; n];
     let mut on_part = vec![false; n];
-    for triangle in surfaces.body.cells.iter().flat_map(split_face) {
+    let own = match (surfaces.body.as_shell(), surfaces.side) {
+        (None, ContactSide::Face(faces)) => faces,
+        _ => &surfaces.body.cells,
+    };
+    for triangle in own.iter().flat_map(split_face) {
         let area = area_of(&triangle);
         for node in triangle.nodes {
             normals[node] = add(normals[node], area);
-            on_part[node] = true;
         }
     }
+    surfaces.body.nodes().into_iter().for_each(|node| on_part[node] = true);
     let (touching, off): (Vec<usize>, Vec<usize>) = (0..n).filter(|k| named[*k]).partition(|k| on_part[*k]);
     if let Some(node) = off.first() {
         let found = format!(
@@ -269,7 +287,7 @@ fn check_nearest(surfaces: &Surfaces<'_>, plate: &FaceGrid, all: &[Candidate]) -
     let nearest = over.filter(|over| over.gap <= nearest.gap + plate.tolerance()).unwrap_or(nearest);
     let (counter, body) = (&surfaces.counter.name, &surfaces.body);
     let the_nearest = format!("the nearest of {} points of `{}`", all.len(), body.name);
-    let faces = surfaces.counter.cells.len();
+    let faces = surfaces.faces.len();
     let mut faults = Faults::new();
     let mut beside = |what: &str, help: &str| {
         let found = format!("{the_nearest} at {} m, {what} ({faces} faces)", components(nearest.position));
@@ -360,7 +378,7 @@ struct NodeShare {
 /// The displacement of the mid-surface at the foot, by the elements of the counter-body.
 fn at_foot(surfaces: &Surfaces<'_>, foot: &Foot) -> Vec<NodeShare> {
     let on_face = |part: &FootShare| {
-        let moved = surfaces.counter.displacement_at(surfaces.nodes, part.face, &part.at);
+        let moved = surfaces.counter.displacement_at(surfaces.nodes, &surfaces.faces[part.face], &part.at);
         let share = part.share;
         moved.into_iter().map(move |(node, component, by)| NodeShare { node, component, share, by })
     };

@@ -46,8 +46,9 @@ pub(super) struct FootShare {
 }
 
 impl FaceGrid {
-    /// `None` when the faces have no common side (no area, or normals that cancel).
-    pub(super) fn new(nodes: &[Vector], faces: &[Cell], towards: Vector) -> Option<Self> {
+    /// The side of a plate that looks `towards` a place, or that from which faces are seen counter-clockwise. `None` when the faces have no
+    /// common side (no area, or normals that cancel).
+    pub(super) fn new(nodes: &[Vector], faces: &[Cell], towards: Option<Vector>) -> Option<Self> {
         let placed = |t: WeightedTriangle| (t, t.nodes.map(|n| nodes[n]));
         let faces: Vec<Face> =
             faces.iter().map(|f| split_face(f).into_iter().map(placed).collect()).collect();
@@ -62,7 +63,8 @@ impl FaceGrid {
         let count = 3.0 * areas.len() as f64;
         let origin = triangles().flat_map(|(_, c)| c).fold([0.0; 3], |sum, c| add(sum, *c));
         let origin = scale(1.0 / count, origin);
-        let side = if dot(subtract(towards, origin), total) < 0.0 { -1.0 } else { 1.0 };
+        let turned = |towards| dot(subtract(towards, origin), total) < 0.0;
+        let side = if towards.is_some_and(turned) { -1.0 } else { 1.0 };
         let normal = scale(side / length, total);
         let first = axis_across(normal);
         let axes = [first, cross(normal, first)];

@@ -49,7 +49,7 @@ pub fn travelled(nodes: &[[f64; 3]], faces: &[Cell], direction: [f64; 3], travel
 pub fn mean_edge<'a>(nodes: &[[f64; 3]], faces: impl IntoIterator<Item = &'a Cell>) -> f64 {
     let (mut sum, mut count) = (0.0, 0);
     for face in faces {
-        let corners = face.nodes();
+        let corners = face.corners();
         for (k, a) in corners.iter().enumerate() {
             let b = corners[(k + 1) % corners.len()];
             sum += (0..3).map(|i| (nodes[*a][i] - nodes[b][i]).powi(2)).sum::<f64>().sqrt();

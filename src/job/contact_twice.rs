@@ -1,5 +1,6 @@
 //! Contacts that a case has twice.
 
+use super::contacts::counter_faces;
 use super::regions::Regions;
 use crate::case::Case;
 use crate::error::{Fault, Faults};
@@ -47,14 +48,14 @@ pub(super) fn surfaces_twice(
 ) {
     let body = |name: &str| {
         let nodes = regions.nodes(&case.contact.get(name)?.body, "").ok()?;
-        model.shell_with(&nodes)
+        model.part_with(&nodes)
     };
     let thickness = |name: &str| model.part(name).map_or(0.0, Part::thickness);
     let surfaces: Vec<(&ContactPair, &str, &str)> = pairs
         .iter()
         .filter_map(|pair| {
-            let counter = case.contact.get(&pair.name)?.counter.as_str();
-            Some((pair, body(&pair.name)?.name.as_str(), counter))
+            let counter = counter_faces(case.contact.get(&pair.name)?, regions, model, "").ok()?.part;
+            Some((pair, body(&pair.name)?.name.as_str(), counter.name.as_str()))
         })
         .collect();
     for (k, (second, body, counter)) in surfaces.iter().enumerate() {

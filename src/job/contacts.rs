@@ -8,8 +8,8 @@ use crate::contact::{
     Bristle, ContactPatch, ContactSide, GroundFault, NormalLaw, SlidingLaw, Surfaces, pair_surfaces,
 };
 use crate::error::{Error, Fault, Faults, Result};
-use crate::mesh::Cell;
-use crate::structure::{DofMap, Model};
+use crate::mesh::{Cell, made_of};
+use crate::structure::{DofMap, Model, Part};
 use crate::system::{Closing, ContactPair, ContactPoint};
 use nalgebra::Vector3;
 use std::collections::BTreeSet;
@@ -129,7 +129,62 @@ impl Stand {
     }
 }
 
-/// Points of a rim or a face against another plate.
+/// The faces that a contact touches, and the part that they are of.
+pub struct CounterFaces<'a> {
+    /// A shell or a solid.
+    pub part: &'a Part,
+    /// All faces of a shell, or those of a region.
+    pub faces: Vec<Cell>,
+}
+
+/// The faces that the counter-body of a contact offers: a shell by its name, or a region of faces on a solid or a shell.
+///
+/// # Errors
+/// A name that is neither, at `place`.
+pub fn counter_faces<'a>(
+    contact: &Contact,
+    regions: &Regions,
+    model: &'a Model,
+    place: &str,
+) -> Result<CounterFaces<'a>> {
+    let name = contact.counter.as_str();
+    if let Some(part) = model.part(name).filter(|part| part.as_shell().is_some()) {
+        return Ok(CounterFaces { part, faces: part.cells.clone() });
+    }
+    let known: Vec<&str> = model.shells().map(|(part, _)| part.name.as_str()).collect();
+    let expected = match known.len() {
+        0 => "a region of faces on a solid, or \"ground\"".to_string(),
+        _ => format!(
+            "one of the case's shells ({}), a region of faces on a solid, or \"ground\"",
+            known.join(", ")
+        ),
+    };
+    let fault = |found: String, help: &str| Error::input(Fault::new(place, found, expected).with_help(help));
+    if regions.mesh.region(name).is_none() {
+        return Err(fault(format!("\"{name}\""), ""));
+    }
+    let region = regions.region(name, place)?;
+    if region.dimension != 2 {
+        let help = "Give the faces that are touched a name of their own, as a physical surface of the mesh";
+        return Err(fault(format!("\"{name}\", a region of {}", made_of(region.dimension)), help));
+    }
+    let nodes = regions.mesh.region_nodes(region);
+    let Some(part) = model.part_with(&nodes) else {
+        return Err(fault(
+            format!("region \"{name}\", some of whose nodes are on no shell and no solid"),
+            "",
+        ));
+    };
+    match part.outward(regions.cells(region)) {
+        Some(faces) => Ok(CounterFaces { part, faces }),
+        None => Err(fault(
+            format!("region \"{name}\", some of whose faces are not on the skin of `{}`", part.name),
+            "",
+        )),
+    }
+}
+
+/// Points of a rim or a face against another body.
 pub fn surface_points(
     name: &str,
     contact: &Contact,
@@ -138,25 +193,18 @@ pub fn surface_points(
 ) -> Result<Vec<ContactPoint>> {
     let place = |key: &str| format!("`contact.{name}.{key}`");
     let region = regions.region(&contact.body, &place("body"))?;
-    let touching = regions.elements(&contact.body, region.dimension, &place("body"))?;
+    let touching = regions.cells(region);
     let nodes = regions.mesh.region_nodes(region);
-    let body = model.shell_with(&nodes).ok_or_else(|| {
+    let body = model.part_with(&nodes).ok_or_else(|| {
         Error::input(Fault::new(
             place("body"),
-            format!("region \"{}\", some of whose nodes are on no shell", contact.body),
-            "lines or faces on one of the case's shells",
+            format!("region \"{}\", some of whose nodes are on no shell and no solid", contact.body),
+            "lines or faces on one of the case's shells, or faces on one of its solids",
         ))
     })?;
-    let counter = model.part(&contact.counter).filter(|part| part.as_shell().is_some()).ok_or_else(|| {
-        let known: Vec<&str> = model.shells().map(|(part, _)| part.name.as_str()).collect();
-        Error::input(Fault::new(
-            place("counter"),
-            format!("\"{}\"", contact.counter),
-            format!("one of the case's shells ({}), or \"ground\"", known.join(", ")),
-        ))
-    })?;
+    let CounterFaces { part: counter, faces } = counter_faces(contact, regions, model, &place("counter"))?;
     let own: BTreeSet<usize> = nodes.iter().copied().collect();
-    let shared = counter.cells.iter().flat_map(|face| face.nodes()).filter(|node| own.contains(node));
+    let shared = faces.iter().flat_map(Cell::nodes).filter(|node| own.contains(node));
     let shared: BTreeSet<usize> = shared.copied().collect();
     if let Some(first) = shared.first() {
         let found = format!(
@@ -172,6 +220,10 @@ pub fn surface_points(
     }
     let lines: Vec<[usize; 2]> = touching.iter().filter_map(Cell::ends).collect();
     let (side, natural) = match region.dimension {
+        1 if body.as_shell().is_none() => {
+            let found = format!("region \"{}\" of lines on the solid `{}`", contact.body, body.name);
+            return Err(Error::input(Fault::new(place("body"), found, "a region of its faces")));
+        }
         1 if contact.points_across == 1 => (ContactSide::Middle(&lines), StiffnessPer::Length),
         1 => (ContactSide::Edge(&lines), StiffnessPer::Length),
         2 => (ContactSide::Face(&touching), StiffnessPer::Area),
@@ -197,15 +249,15 @@ pub fn surface_points(
             )));
         }
     };
-    let moved = (stand.travel != 0.0).then(|| {
-        crate::contact::travelled(&model.nodes, &counter.cells, contact.sliding_direction, stand.travel)
-    });
+    let moved = (stand.travel != 0.0)
+        .then(|| crate::contact::travelled(&model.nodes, &faces, contact.sliding_direction, stand.travel));
     let surfaces = Surfaces {
         name,
         nodes: moved.as_ref().unwrap_or(&model.nodes),
         body,
         side,
         counter,
+        faces: &faces,
         sliding_direction: contact.sliding_direction,
         patch,
         stroke: contact.stroke,
@@ -217,11 +269,11 @@ pub fn surface_points(
 }
 
 /// Two unit vectors of a pair, for pictures: where the load presses the body, and where the counter-body moves.
-pub fn arrows(contact: &Contact, model: &Model, points: &[ContactPoint]) -> [[f64; 3]; 2] {
+pub fn arrows(contact: &Contact, regions: &Regions, model: &Model, points: &[ContactPoint]) -> [[f64; 3]; 2] {
     let sliding = Vector3::from(contact.sliding_direction) * contact.sliding_velocity;
-    let press = match (contact.into, model.part(&contact.counter)) {
+    let press = match (contact.into, counter_faces(contact, regions, model, "").ok()) {
         (Some(into), _) => Vector3::from(into),
-        (None, Some(counter)) => counter.cells.first().map_or(Vector3::zeros(), |face| {
+        (None, Some(CounterFaces { faces, .. })) => faces.first().map_or(Vector3::zeros(), |face| {
             let at = |k: usize| Vector3::from(model.nodes[face.nodes()[k]]);
             let normal = (at(1) - at(0)).cross(&(at(2) - at(0)));
             let above: f64 = points.iter().map(|p| (Vector3::from(p.position) - at(0)).dot(&normal)).sum();

@@ -134,12 +134,17 @@ impl<'a> Prepared<'a> {
             return Vec::new();
         }
         let pairs = self.system.pairs.iter();
-        pairs.map(|pair| arrows(&self.case.contact[&pair.name], &self.model, &pair.points)).collect()
+        pairs
+            .map(|pair| arrows(&self.case.contact[&pair.name], &self.regions, &self.model, &pair.points))
+            .collect()
     }
 
-    /// Settings of the solution of steady sliding. A contact pressed deeper than half of the thinnest plate makes no sense.
+    /// Settings of the solution of steady sliding. A contact pressed deeper than half of the thinnest part makes no sense.
     pub fn steady_options(&self) -> SteadyOptions {
-        let thinnest = self.model.shells().map(|(_, shell)| shell.thickness).fold(f64::INFINITY, f64::min);
+        let solid = |part: &&Part| part.kind.dimension() == 3;
+        let sizes = self.model.parts.iter().filter(solid).map(|part| part.smallest_extent(&self.model.nodes));
+        let thinnest =
+            self.model.shells().map(|(_, shell)| shell.thickness).chain(sizes).fold(f64::INFINITY, f64::min);
         SteadyOptions { penetration_limit: 0.5 * thinnest, ..SteadyOptions::default() }
     }
 

@@ -6,7 +6,7 @@ use crate::equilibrium::closed_springs;
 use crate::error::{Fault, Faults, Result};
 use crate::numbers::{components, significant};
 use crate::schema::dotted;
-use crate::structure::{is_free_along, unresisted_parts};
+use crate::structure::{Part, is_free_along, unresisted_parts};
 use crate::system::{Closing, ContactMotion};
 
 /// Whether steady sliding can have a contact that carries load.
@@ -69,8 +69,7 @@ fn parts_without_a_support(prepared: &Prepared, faults: &mut Faults) {
         unresisted_parts(&prepared.model, &prepared.assembled, stiffness, &springs).unwrap_or_default();
     for part in parts {
         let place = match part.names.first() {
-            Some(name) if prepared.case.shell.contains_key(name) => format!("`shell.{}`", dotted(name)),
-            Some(name) => format!("`bar.{}`", dotted(name)),
+            Some(name) => prepared.model.part(name).map_or_else(|| "`mass`".to_string(), Part::place),
             None => "`mass`".to_string(),
         };
         let motions = if part.motions == 1 { "motion" } else { "motions" };

@@ -161,6 +161,11 @@ impl Regions {
         Err(Error::input(fault.with_help(if region.dimension == 3 { NOT_SOLID } else { "" })))
     }
 
+    /// The cells of a region.
+    pub fn cells(&self, region: &Region) -> Vec<Cell> {
+        region.elements.iter().map(|e| self.mesh.elements[*e].clone()).collect()
+    }
+
     /// The solids of region `name`; kinds that lock only where that is allowed.
     pub fn solids(&self, name: &str, allow_locking: bool, place: &str) -> Result<Vec<Cell>> {
         let region = self.region_of(name, 3, place)?;
@@ -177,7 +182,7 @@ impl Regions {
             let help = "Mesh with 10-node tetrahedra: `gmsh -3 -order 2 model.geo -o model.msh`; `allow_locking = true` takes these";
             return Err(Error::input(fault.with_help(help)));
         }
-        Ok(region.elements.iter().map(|e| self.mesh.elements[*e].clone()).collect())
+        Ok(self.cells(region))
     }
 
     /// The elements of region `name`, which must have `dimension` and be of first order.
@@ -195,7 +200,7 @@ impl Regions {
             let help = "Mesh again with first order: `gmsh -2 -order 1 model.geo -o model.msh`";
             return Err(Error::input(fault.with_help(help)));
         }
-        Ok(region.elements.iter().map(|e| self.mesh.elements[*e].clone()).collect())
+        Ok(self.cells(region))
     }
 }
 

@@ -1,6 +1,6 @@
 //! Contacts that run over the mesh of their counter-body in time.
 
-use super::contacts::{Stand, surface_points};
+use super::contacts::{Stand, counter_faces, surface_points};
 use super::prepared::Prepared;
 use super::time_function::profile;
 use crate::case::{Contact, TransientAnalysis};
@@ -54,8 +54,9 @@ fn track(
         let stand = Stand { travel, touch: Some(touch) };
         surface_points(name, contact, model, &stand).ok().filter(|there| there.len() == points.len())
     };
-    let counter = prepared.model.part(&contact.counter).into_iter();
-    let edge = mean_edge(&prepared.model.nodes, counter.flat_map(|part| &part.cells));
+    let counter =
+        counter_faces(contact, &prepared.regions, &prepared.model, &format!("`contact.{name}.counter`"))?;
+    let edge = mean_edge(&prepared.model.nodes, &counter.faces);
     let Stations { first, spacing, points } = Stations::new([low, high], edge, at).ok_or_else(|| {
         let found = format!("a way from {low:.4} m to {high:.4} m, which leaves `{}`", contact.counter);
         Error::input(

@@ -4,8 +4,9 @@ use super::elements::waves::shear_coefficient;
 use super::elements::{Elasticity, FlatTriangle, isotropic, split_face};
 use super::material::Material;
 use super::section::Section;
-use crate::mesh::Cell;
+use crate::mesh::{Cell, outer_faces};
 use crate::schema::{choices, dotted};
+use std::collections::HashMap;
 
 /// A structure: nodes and all that hangs on them. Degrees of freedom are (ux, uy, uz, rx, ry, rz) at every node.
 #[derive(Debug, Clone, Default)]
@@ -92,9 +93,9 @@ pub struct Solid {
 }
 
 impl Model {
-    /// The first shell that has all of `nodes`.
-    pub fn shell_with(&self, nodes: &[usize]) -> Option<&Part> {
-        self.shells().map(|(part, _)| part).find(|part| {
+    /// The first shell or solid that has all of `nodes`.
+    pub fn part_with(&self, nodes: &[usize]) -> Option<&Part> {
+        self.parts.iter().filter(|part| part.kind.dimension() > 1).find(|part| {
             let own = part.nodes();
             nodes.iter().all(|n| own.binary_search(n).is_ok())
         })
@@ -128,6 +129,31 @@ impl Part {
     /// h \[m\] of a shell, zero of others.
     pub fn thickness(&self) -> f64 {
         self.as_shell().map_or(0.0, |shell| shell.thickness)
+    }
+
+    /// Faces of a solid as seen from outside counter-clockwise; `None` where some are not on its skin. Those of a shell as they are.
+    pub fn outward(&self, faces: Vec<Cell>) -> Option<Vec<Cell>> {
+        if self.kind.dimension() < 3 {
+            return Some(faces);
+        }
+        let key = |face: &Cell| {
+            let mut corners = face.corners().to_vec();
+            corners.sort_unstable();
+            corners
+        };
+        let skin: HashMap<Vec<usize>, Cell> =
+            outer_faces(self.cells.iter()).into_iter().map(|face| (key(&face), face)).collect();
+        faces.iter().map(|face| skin.get(&key(face)).cloned()).collect()
+    }
+
+    /// The shortest side of the box about its nodes, along the axes \[m\].
+    pub fn smallest_extent(&self, nodes: &[[f64; 3]]) -> f64 {
+        let own = self.nodes();
+        let side = |k: usize| {
+            let along = || own.iter().map(|n| nodes[*n][k]);
+            along().fold(f64::NEG_INFINITY, f64::max) - along().fold(f64::INFINITY, f64::min)
+        };
+        (0..3).map(side).fold(f64::INFINITY, f64::min)
     }
 
     /// Its table in a case, in back-ticks: `shell.disc`.

@@ -69,15 +69,25 @@ impl Part {
         self.elements_on(self.cells.first()?, nodes).into_iter().next()
     }
 
-    /// The displacement of a point of its face `face`, on nodes with the given coordinates: for each node that it depends on, the
-    /// (ux, uy, uz, rx, ry, rz) of the point for a unit of each component of the node's.
+    /// The displacement of a point of `face`, a cell of a shell or a face of a solid, on nodes with the given coordinates: for each node that
+    /// it depends on, the (ux, uy, uz, rx, ry, rz) of the point for a unit of each component of the node's. Of a solid it is linear on the
+    /// triangle of the point, which meets rigid motions exactly.
     pub fn displacement_at(
         &self,
         nodes: &[[f64; 3]],
-        face: usize,
+        face: &Cell,
         at: &FacePoint,
     ) -> Vec<(usize, usize, [f64; 6])> {
-        let elements = self.elements_on(&self.cells[face], nodes);
+        if matches!(self.kind, PartKind::Solid(_)) {
+            let along = |component: usize, share: f64| {
+                std::array::from_fn(|k| if k == component { share } else { 0.0 })
+            };
+            let shares = at.corners.into_iter().zip(at.barycentric);
+            return shares
+                .flat_map(|(node, share)| (0..3).map(move |c| (node, c, along(c, share))))
+                .collect();
+        }
+        let elements = self.elements_on(face, nodes);
         let of = |element: &AnyElement| {
             let columns = element.displacement_at(at)?;
             let freedoms = element.nodes().iter().flat_map(|n| element.components().iter().map(|c| (*n, *c)));

@@ -64,6 +64,7 @@ fn surfaces<'a>(rig: &'a Rig, patch: ContactPatch) -> Surfaces<'a> {
         body: &rig.disc,
         side: ContactSide::Edge(&rig.rim),
         counter: &rig.slider,
+        faces: &rig.slider.cells,
         sliding_direction: [1.0, 0.0, 0.0],
         patch,
         stroke: 0.0,
@@ -228,7 +229,7 @@ fn points_do_not_depend_on_the_order_of_faces() {
             corners.rotate_left(k % 4);
             *face = Cell::new(face.kind(), &corners).unwrap();
         }
-        s.counter = &other;
+        (s.counter, s.faces) = (&other, &other.cells);
         let other = pair_surfaces(&s, &reduce).unwrap();
         let n = 6 * rig.nodes.len();
         assert_eq!((one.len(), other.len()), (4, 4));

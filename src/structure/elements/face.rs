@@ -14,13 +14,15 @@ pub struct WeightedTriangle {
     pub weight: f64,
 }
 
-/// The triangles of `face`: itself, or the four half-weight ones of a quadrilateral; none for points and lines.
+/// The triangles of `face`: itself, or the four half-weight ones of a quadrilateral, of a face of second order those of its pieces; none
+/// for points and lines.
 pub fn split_face(face: &Cell) -> Vec<WeightedTriangle> {
-    match (face.dimension(), face.corners()) {
-        (2, &[a, b, c]) => vec![WeightedTriangle { nodes: [a, b, c], weight: 1.0 }],
-        (2, &[a, b, c, d]) => [[a, b, c], [a, c, d], [a, b, d], [b, c, d]]
-            .map(|nodes| WeightedTriangle { nodes, weight: 0.5 })
-            .to_vec(),
+    let nodes = face.nodes();
+    let triangles = |piece: &&[u8]| match **piece {
+        [a, b, c] => vec![([a, b, c], 1.0)],
+        [a, b, c, d] => [[a, b, c], [a, c, d], [a, b, d], [b, c, d]].map(|t| (t, 0.5)).to_vec(),
         _ => Vec::new(),
-    }
+    };
+    let pieces = face.kind().pieces().iter().flat_map(triangles);
+    pieces.map(|(t, weight)| WeightedTriangle { nodes: t.map(|k| nodes[usize::from(k)]), weight }).collect()
 }
