@@ -7,7 +7,7 @@ use super::jacobian::keeps_orientation;
 use super::orient::neighbours;
 use super::quality::{dot, face_shape, minus, norm};
 use super::{Cell, Mesh, Region};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashSet};
 use stridor_base::connected::lowest_connected;
 use stridor_base::error::{Fault, Faults};
 use stridor_base::numbers::significant;
@@ -42,6 +42,12 @@ pub struct Diagnosis {
 /// # Ok::<(), stridor_base::error::Error>(())
 /// ```
 pub fn diagnose(mesh: &Mesh) -> Diagnosis {
+    diagnose_apart(mesh, &[])
+}
+
+/// The same of a mesh in which the two regions of each pair are in contact: their nodes may be in the same place, or on each other's
+/// edges, without being joined.
+pub fn diagnose_apart(mesh: &Mesh, pairs: &[[&str; 2]]) -> Diagnosis {
     let mut faults = Faults::new();
     check_coordinates(mesh, &mut faults);
     if !faults.0.is_empty() {
@@ -50,8 +56,9 @@ pub fn diagnose(mesh: &Mesh) -> Diagnosis {
     }
     let mut diagnosis = Diagnosis { faults, warnings: Vec::new() };
     check_unreferenced(mesh, &mut diagnosis);
-    check_coincident(mesh, &mut diagnosis);
-    check_hanging(mesh, &mut diagnosis.warnings);
+    let apart = Apart::new(mesh, pairs);
+    check_coincident(mesh, &apart, &mut diagnosis);
+    check_hanging(mesh, &apart, &mut diagnosis.warnings);
     check_shapes(mesh, &mut diagnosis);
     for region in &mesh.regions {
         check_duplicates(mesh, region, &mut diagnosis.faults);
@@ -59,6 +66,24 @@ pub fn diagnose(mesh: &Mesh) -> Diagnosis {
         check_pieces(mesh, region, &mut diagnosis.warnings);
     }
     diagnosis
+}
+
+/// The nodes of regions that are in contact, a pair of sets each.
+struct Apart(Vec<[HashSet<usize>; 2]>);
+
+impl Apart {
+    fn new(mesh: &Mesh, pairs: &[[&str; 2]]) -> Self {
+        let nodes = |name: &str| -> HashSet<usize> {
+            mesh.region(name).map_or(HashSet::new(), |region| mesh.region_nodes(region).into_iter().collect())
+        };
+        Apart(pairs.iter().map(|pair| pair.map(nodes)).collect())
+    }
+
+    /// Whether all of `a` are on one side of a contact and all of `b` on the other.
+    fn are(&self, a: &[usize], b: &[usize]) -> bool {
+        let on = |nodes: &[usize], side: &HashSet<usize>| nodes.iter().all(|node| side.contains(node));
+        self.0.iter().any(|[one, other]| on(a, one) && on(b, other) || on(a, other) && on(b, one))
+    }
 }
 
 /// `3 (line 12), 5 (line 14) and 312 more`.
@@ -119,7 +144,7 @@ fn check_unreferenced(mesh: &Mesh, diagnosis: &mut Diagnosis) {
 }
 
 /// Nodes at the same place: a fault inside a region (a hidden crack), a warning between regions.
-fn check_coincident(mesh: &Mesh, diagnosis: &mut Diagnosis) {
+fn check_coincident(mesh: &Mesh, apart: &Apart, diagnosis: &mut Diagnosis) {
     let Some([low, high]) = bounds(mesh) else { return };
     let tolerance = COINCIDENT * norm(minus(high, low));
     if tolerance == 0.0 {
@@ -135,7 +160,8 @@ fn check_coincident(mesh: &Mesh, diagnosis: &mut Diagnosis) {
         // One partner is enough: the nodes of a heap form a chain.
         let partner =
             near.map(|other| other.1).find(|m| norm(minus(mesh.nodes[*n], mesh.nodes[*m])) <= tolerance);
-        pairs.extend(partner.map(|m| [*n.min(&m), *n.max(&m)]));
+        let joined = partner.filter(|m| !apart.are(&[*n], &[*m]));
+        pairs.extend(joined.map(|m| [*n.min(&m), *n.max(&m)]));
     }
     if pairs.is_empty() {
         return;
@@ -174,8 +200,9 @@ fn check_coincident(mesh: &Mesh, diagnosis: &mut Diagnosis) {
 }
 
 /// Nodes on edges of faces that do not have them: two meshes side by side that are not joined.
-fn check_hanging(mesh: &Mesh, warnings: &mut Vec<Fault>) {
-    let found = hanging(mesh);
+fn check_hanging(mesh: &Mesh, apart: &Apart, warnings: &mut Vec<Fault>) {
+    let mut found = hanging(mesh);
+    found.retain(|hanging| !apart.are(&[hanging.node], &hanging.edge));
     if found.is_empty() {
         return;
     }
@@ -352,7 +379,9 @@ pub(super) fn bounds(mesh: &Mesh) -> Option<[[f64; 3]; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::CellKind;
     use crate::Origin;
+    use crate::generate::structured_box;
     use crate::generate::{Faces, structured_plate};
 
     /// A 2 × 2 plate of quadrilaterals whose file numbers nodes from 101 and elements from 501.
@@ -422,6 +451,24 @@ mod tests {
                 .to_string()
                 .contains("element 502: found 1 elements without length or area")
         );
+    }
+
+    /// Two boxes on each other, with equal and with unlike meshes.
+    #[test]
+    fn nodes_of_regions_in_contact_may_be_at_the_same_place() {
+        for cells in [[2, 2, 1], [3, 2, 1]] {
+            let mut mesh = structured_box(CellKind::Hexahedron8, [1.0, 1.0, 0.2], [2, 2, 1]).unwrap();
+            let mut upper = structured_box(CellKind::Hexahedron8, [1.0, 1.0, 0.2], cells).unwrap();
+            upper.nodes.iter_mut().for_each(|x| x[2] += 0.2);
+            upper.regions.iter_mut().for_each(|region| region.name += "_upper");
+            mesh.append(upper);
+            assert!(!diagnose(&mesh).warnings.is_empty(), "{cells:?}");
+            for pair in [["z_max", "z_min_upper"], ["z_min_upper", "z_max"]] {
+                let diagnosis = diagnose_apart(&mesh, &[pair]);
+                assert!(diagnosis.warnings.is_empty(), "{cells:?}: {:?}", diagnosis.warnings);
+            }
+            assert!(!diagnose_apart(&mesh, &[["z_max", "z_max_upper"]]).warnings.is_empty());
+        }
     }
 
     #[test]

@@ -35,7 +35,7 @@ mod skin;
 mod write;
 
 pub use cell::Cell;
-pub use check::{Diagnosis, diagnose};
+pub use check::{Diagnosis, diagnose, diagnose_apart};
 pub use gmsh::read;
 pub use info::Info;
 pub use kind::{CellKind, CellTable};
