@@ -125,9 +125,8 @@ class Results:
         geometry = self._dataset("geometry", "mesh")
         nodes = geometry["element_nodes"].values
         ends = geometry["element_offsets"].values
-        sizes = np.diff(ends)
-        cells = np.insert(nodes, ends[:-1], sizes)
-        types = np.array([0, *_CELL_TYPES])[sizes]
+        cells = np.insert(nodes, ends[:-1], np.diff(ends))
+        types = geometry["element_kind"].values.astype(np.uint8)
         grid = pyvista.UnstructuredGrid(cells, types, np.asarray(geometry["nodes"].values, dtype=float))
         grid.cell_data["part"] = geometry["element_part"].values
         grid.field_data["part_names"] = geometry["part_names"].values.astype(str)
@@ -198,10 +197,6 @@ class Results:
 
     def _repr_html_(self) -> str:
         return str(self.tree._repr_html_())  # type: ignore[no-untyped-call]
-
-
-_CELL_TYPES = (1, 3, 5, 9)
-"""The VTK types of elements with 1, 2, 3 and 4 nodes: vertex, line, triangle, quadrilateral."""
 
 
 def open_results(folder: str | os.PathLike[str]) -> Results:

@@ -128,7 +128,7 @@ impl Geometry {
     fn group(&self) -> Group<'_> {
         let whole = |numbers: Vec<usize>| Values::Integers(numbers.into_iter().map(|n| n as i64).collect());
         let nodes = vec![Dimension::indexed("node", self.nodes.len()), Dimension::axes()];
-        let flat: Vec<usize> = self.cells.iter().flat_map(Cell::nodes).copied().collect();
+        let flat: Vec<usize> = self.cells.iter().flat_map(Cell::to_vtk).collect();
         let mut offsets = vec![0];
         offsets.extend(self.cells.iter().scan(0, |end, cell| {
             *end += cell.nodes().len();
@@ -145,7 +145,7 @@ impl Geometry {
             .with(Variable::new(
                 "element_nodes",
                 "1",
-                "node indices, element after element",
+                "node indices, element after element, each in the order of VTK",
                 entries,
                 whole(flat),
             ))

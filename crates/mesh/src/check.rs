@@ -293,7 +293,8 @@ fn check_shapes(mesh: &Mesh, diagnosis: &mut Diagnosis) {
         let kinds: BTreeSet<&str> = inverted.iter().map(|e| mesh.elements[*e].kind().table().name).collect();
         let kinds: Vec<&str> = kinds.into_iter().collect();
         let found = format!("{} elements turned inside out ({})", inverted.len(), kinds.join(", "));
-        let help = "Nodes in another order, corners that are crossed, or a node in the middle of an edge that lies beyond a quarter of it";
+        let help = "Nodes in another order, corners that are crossed, or a node in the middle of an edge that lies beyond a quarter of it; of curved faces in Gmsh \
+                    `Mesh.HighOrderOptimize = 2;`, or another element size, may help";
         let expected = "a positive Jacobian at every node";
         diagnosis.faults.push(Fault::new(elements(mesh, &inverted), found, expected).with_help(help));
     }
