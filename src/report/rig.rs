@@ -129,8 +129,8 @@ fn outlines(geometry: &Geometry, seen: &[usize]) -> BTreeMap<usize, Vec<[usize; 
         }
     }
     let sharp = |a: usize, b: usize| {
-        let [a, b] = [a, b].map(|k| unit(normal(geometry, k)).unwrap_or_default());
-        dot(a, b).abs() < SHARP.cos()
+        let normals = [a, b].map(|k| unit(normal(geometry, k)));
+        matches!(normals, [Some(a), Some(b)] if dot(a, b).abs() < SHARP.cos())
     };
     let mut outlines: BTreeMap<usize, Vec<[usize; 2]>> = BTreeMap::new();
     for ((_, a, b), faces) in sides {

@@ -180,6 +180,34 @@ fn eigenvalues_converge_with_the_order_of_the_kind() {
     }
 }
 
+/// Goal: NAFEMS FV52, a square plate of 10 × 10 × 1 m of solids, its lower edges held across: three rigid motions and the frequencies of the test
+/// (NAFEMS, The Standard NAFEMS Benchmarks, 1990: 45.897, 109.44 twice, 167.89, 193.59, 206.19 twice).
+#[test]
+fn nafems_simply_supported_solid_plate() {
+    let published = [45.897, 109.44, 109.44, 167.89, 193.59, 206.19, 206.19];
+    let material = Material { youngs_modulus: 200e9, density: 8000.0, ..steel() };
+    for kind in [
+        CellKind::Hexahedron8,
+        CellKind::Hexahedron20,
+        CellKind::Hexahedron27,
+        CellKind::Wedge15,
+        CellKind::Tetrahedron10,
+    ] {
+        let cells = if kind.is_first_order() { [16, 16, 3] } else { [8, 8, 2] };
+        let mesh = structured_box(kind, [10.0, 10.0, 1.0], cells).unwrap();
+        let mut model = of_mesh(&mesh);
+        model.parts[0].kind = Solid { material }.into();
+        let edge = |x: &[f64; 3]| x[2] < 1e-9 && (0..2).any(|k| x[k] < 1e-9 || x[k] > 10.0 - 1e-9);
+        let nodes = (0..mesh.nodes.len()).filter(|n| edge(&mesh.nodes[*n])).collect();
+        model.supports.push(Support { nodes, held: [false, false, true, false, false, false] });
+        let found = lowest_frequencies(&assemble(&model).unwrap().structure, 10, 10.0);
+        let errors: Vec<f64> = published.iter().zip(&found[3..]).map(|(e, f)| f / e - 1.0).collect();
+        println!("{kind:?}: {errors:.4?}");
+        assert!(found[2] < 0.05, "{kind:?}: {found:?}");
+        assert!(errors.iter().all(|e| e.abs() < 0.06), "{kind:?}: {errors:?}");
+    }
+}
+
 /// Goal: a uniform stress σ along x gives a bar's K_σ: transverse motions w = x have the energy ½ σ A l; rigid translations none.
 #[test]
 fn geometric_stiffness_of_a_stretched_bar() {
