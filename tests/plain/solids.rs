@@ -208,6 +208,23 @@ fn nafems_simply_supported_solid_plate() {
     }
 }
 
+/// Goal: a cantilever of 15 hexahedra of 20 nodes, 300 × 30 × 1 mm, has the frequencies that CalculiX states for the same mesh and
+/// quadrature (its test dloadlin20f, C3D20).
+#[test]
+fn a_cantilever_of_hexahedra_is_that_of_calculix() {
+    let published = [9.483, 59.577, 168.56, 183.57, 277.76, 336.68];
+    let mesh = structured_box(CellKind::Hexahedron20, [0.3, 0.03, 0.001], [15, 1, 1]).unwrap();
+    let mut model = of_mesh(&mesh);
+    model.parts[0].kind = Solid { material: Material { youngs_modulus: 209e9, ..steel() } }.into();
+    let nodes = mesh.region_nodes(mesh.require("x_min", 2).unwrap());
+    model.supports.push(Support { nodes, held: [true, true, true, false, false, false] });
+    let found = lowest_frequencies(&assemble(&model).unwrap().structure, published.len(), 0.0);
+    for (published, found) in published.iter().zip(&found) {
+        // Five digits are published.
+        assert!((found / published - 1.0).abs() < 5e-5, "{found} {published}");
+    }
+}
+
 /// Goal: a uniform stress σ along x gives a bar's K_σ: transverse motions w = x have the energy ½ σ A l; rigid translations none.
 #[test]
 fn geometric_stiffness_of_a_stretched_bar() {
