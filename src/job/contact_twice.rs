@@ -1,6 +1,6 @@
 //! Contacts that a case has twice.
 
-use super::contacts::counter_faces;
+use super::counter::counter_faces;
 use super::regions::Regions;
 use crate::case::Case;
 use crate::error::{Fault, Faults};

@@ -17,6 +17,7 @@ mod compare;
 mod complex;
 mod contact_twice;
 mod contacts;
+mod counter;
 mod explore;
 mod export;
 #[cfg(feature = "cli")]

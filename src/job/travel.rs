@@ -1,6 +1,7 @@
 //! Contacts that run over the mesh of their counter-body in time.
 
-use super::contacts::{Stand, counter_faces, surface_points};
+use super::contacts::{Stand, surface_points};
+use super::counter::counter_faces;
 use super::prepared::Prepared;
 use super::time_function::profile;
 use crate::case::{Contact, TransientAnalysis};

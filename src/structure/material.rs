@@ -2,6 +2,7 @@
 
 use crate::schema::units::{DENSITY, NUMBER, PRESSURE, RATE, TIME};
 use crate::schema::{Invalidates, declare, key};
+use nalgebra::SMatrix;
 use std::ops::Bound;
 
 declare! {
@@ -40,5 +41,16 @@ impl Material {
     /// G = E/2(1+ν) \[Pa\].
     pub fn shear_modulus(&self) -> f64 {
         self.youngs_modulus / (2.0 * (1.0 + self.poissons_ratio))
+    }
+
+    /// D \[Pa\] of σ = D ε on (xx, yy, zz, xy, yz, zx) in space, shear strains γ.
+    pub fn elasticity(&self) -> SMatrix<f64, 6, 6> {
+        let (e, nu, g) = (self.youngs_modulus, self.poissons_ratio, self.shear_modulus());
+        let lambda = e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu));
+        SMatrix::from_fn(|i, j| match (i < 3, j < 3) {
+            (true, true) => lambda + if i == j { 2.0 * g } else { 0.0 },
+            (false, false) if i == j => g,
+            _ => 0.0,
+        })
     }
 }

@@ -1,7 +1,7 @@
 //! Model of a structure: parts, sections and supports as plain data, before any matrix.
 
 use super::elements::waves::shear_coefficient;
-use super::elements::{Elasticity, FlatTriangle, isotropic, split_face};
+use super::elements::{FlatTriangle, split_face};
 use super::material::Material;
 use super::section::Section;
 use crate::mesh::{Cell, outer_faces};
@@ -221,13 +221,6 @@ impl PartKind {
             PartKind::Bar(_) => 1,
             PartKind::Solid(_) => 3,
         }
-    }
-}
-
-impl Solid {
-    /// D \[Pa\] of σ = D ε on (xx, yy, zz, xy, yz, zx), shear strains γ.
-    pub fn elasticity(&self) -> Elasticity {
-        isotropic(&self.material)
     }
 }
 

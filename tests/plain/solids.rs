@@ -6,7 +6,6 @@ use std::f64::consts::{PI, TAU};
 use stridor::linalg::random::Random;
 use stridor::mesh::generate::structured_box;
 use stridor::mesh::{Cell, CellKind, Mesh};
-use stridor::structure::elements::isotropic;
 use stridor::structure::*;
 use stridor::system::Prestress;
 
@@ -70,7 +69,7 @@ fn patch_test_of_every_kind() {
         e[(1, 2)],
         e[(2, 0)],
     ]);
-    let energy = strain.dot(&(isotropic(&steel()) * strain)) * 0.48;
+    let energy = strain.dot(&(steel().elasticity() * strain)) * 0.48;
     for (kind, curved) in solids().flat_map(|kind| [(kind, false), (kind, true)]) {
         let (mesh, inside) = distorted(kind, curved, 3);
         let assembled = assemble(&of_mesh(&mesh)).unwrap();

@@ -61,7 +61,7 @@ pub use kirchhoff::KirchhoffTriangle;
 pub use mindlin::{MindlinQuadrilateral, MindlinTriangle};
 pub use point::{MassElement, SpringElement, mass_diagonal, spring_direction};
 pub use shell::FlatShell;
-pub use solid::{Elasticity, SolidElement, isotropic};
+pub use solid::SolidElement;
 pub use triangle::FlatTriangle;
 
 use nalgebra::SMatrix;

@@ -19,8 +19,6 @@ use std::sync::OnceLock;
 
 /// Rows of B: (ε_xx, ε_yy, ε_zz, γ_xy, γ_yz, γ_zx).
 type Strain = SMatrix<f64, 6, 3>;
-/// D \[Pa\].
-pub type Elasticity = SMatrix<f64, 6, 6>;
 
 /// How far a middle may be off, as a part of an edge: rounding of coordinates in files.
 const STRAIGHT: f64 = 1e-6;
@@ -77,17 +75,6 @@ impl Rules {
         };
         &ALL.get_or_init(|| CellKind::all().map(rules).collect())[kind as usize]
     }
-}
-
-/// D of an isotropic material.
-pub fn isotropic(material: &Material) -> Elasticity {
-    let (e, nu, g) = (material.youngs_modulus, material.poissons_ratio, material.shear_modulus());
-    let lambda = e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu));
-    Elasticity::from_fn(|i, j| match (i < 3, j < 3) {
-        (true, true) => lambda + if i == j { 2.0 * g } else { 0.0 },
-        (false, false) if i == j => g,
-        _ => 0.0,
-    })
 }
 
 /// B of one node from the gradient of its shape function.
@@ -192,7 +179,7 @@ impl<'a> SolidElement<'a> {
 
     /// ∫ Bᵀ D B dV on the nodes and, of a hexahedron, the displacements inside.
     fn whole_stiffness(&self, k: &mut ElementMatrix) {
-        let d = self.solid.elasticity();
+        let d = self.solid.material.elasticity();
         let middle = self.has_bubbles().then(|| self.middle());
         let mut gradients = Vec::with_capacity(30);
         for point in self.stiffness_rule() {
@@ -266,7 +253,7 @@ impl FiniteElement for SolidElement<'_> {
     }
 
     fn geometric_stiffness(&self, displacement: &[[f64; 6]], k: &mut ElementMatrix) -> bool {
-        let d = self.solid.elasticity();
+        let d = self.solid.material.elasticity();
         let nodes = self.cell.nodes();
         let mut u: Vec<Vector3<f64>> =
             nodes.iter().map(|n| Vector3::from_column_slice(&displacement[*n][..3])).collect();
