@@ -1,7 +1,7 @@
 //! Writes the generated meshes of the folder `meshes/`, in millimetres.
 
 use std::path::Path;
-use stridor::mesh::generate::{PadOnDiscSpec, RigSpec, pad_on_disc, rig};
+use stridor::mesh::generate::{PadOnDiscSpec, RigSpec, pad_on_disc, rig, solid_brake};
 use stridor::mesh::{Info, write};
 
 fn main() -> Result<(), stridor::error::Error> {
@@ -10,6 +10,7 @@ fn main() -> Result<(), stridor::error::Error> {
         ("rig-small.msh", rig(&RigSpec::small())?),
         ("rig-medium.msh", rig(&RigSpec::medium())?),
         ("pad-on-disc.msh", pad_on_disc(&PadOnDiscSpec::example())?),
+        ("solid-brake.msh", solid_brake()?),
     ] {
         write(&folder.join(name), &mesh, 0.001)?;
         println!("{name}\n{}", Info::of(&mesh));

@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::mesh::Mesh;
-use crate::mesh::generate::{PadOnDiscSpec, RigSpec, pad_on_disc, rig};
+use crate::mesh::generate::{PadOnDiscSpec, RigSpec, pad_on_disc, rig, solid_brake};
 use clap::ValueEnum;
 use std::path::Path;
 
@@ -13,6 +13,8 @@ pub enum Template {
     Rig,
     /// A pad that a piston presses on the face of a disc
     Pad,
+    /// A pad of solids on the face of a disc of solids
+    Solid,
     /// Two degrees of freedom on a belt, without a mesh
     TwoDof,
     /// Matrices M, C, K of another program, with terms that depend on the speed
@@ -64,6 +66,10 @@ impl Template {
             Template::Pad => {
                 let case = include_str!("../../validation/pad-on-disc/case.toml");
                 meshed(case, "pad-on-disc.msh", "pad.msh", || pad_on_disc(&PadOnDiscSpec::example()))
+            }
+            Template::Solid => {
+                let case = include_str!("../../validation/solid-brake/case.toml");
+                meshed(case, "solid-brake.msh", "brake.msh", solid_brake)
             }
             Template::TwoDof => plain(include_str!("../../validation/two-dof/case.toml"), &[]),
             Template::Imported => plain(

@@ -329,6 +329,7 @@ fn every_template_is_valid_and_runs() {
     let ran = [
         ("rig", "report.html"),
         ("pad", "growth.svg"),
+        ("solid", "complex_modes.csv"),
         ("two-dof", "complex_modes.csv"),
         ("imported", "sensitivity.svg"),
         ("transient", "transient.csv"),

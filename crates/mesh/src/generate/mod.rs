@@ -18,6 +18,7 @@ mod pad;
 mod plate;
 mod rig;
 mod solid;
+mod solid_brake;
 mod structured;
 
 pub use disc::{DiscSpec, disc};
@@ -26,6 +27,7 @@ pub use pad::{PadOnDiscSpec, pad_on_disc};
 pub use plate::{PlateSpec, plate};
 pub use rig::{BarSide, BarSpec, RigSpec, rig};
 pub use solid::structured_box;
+pub use solid_brake::{solid_brake, structured_ring};
 pub use structured::{Faces, structured_annulus, structured_plate};
 
 use stridor_base::error::{Error, Fault, Faults, Result};
