@@ -8,10 +8,7 @@ use super::studies::{SHARED, UNCERTAINTY, studies};
 use crate::error::{Error, Result};
 use crate::linalg::sparse::{add_scaled, sum_of_squares};
 use crate::memory::{Available, available};
-use crate::mesh::outer_faces;
-use crate::structure::elements::{WeightedTriangle, split_face};
-use crate::structure::{Material, Model, Part, PartKind, PlateTheory, Shell};
-use nalgebra::Vector3;
+use crate::structure::{Model, Part, PartKind, as_plate};
 use std::f64::consts::{PI, TAU};
 
 /// Runs of fewer degrees of freedom fit any machine, with as many modes as they can have: 14 vectors each take 0.4 GiB.
@@ -226,23 +223,6 @@ fn modes_below(model: &Model, hz: f64) -> f64 {
     model.parts.iter().map(of).sum()
 }
 
-/// The skin S of a solid as a plate as thick as 2V/S.
-fn as_plate(solid: &Part, material: Material, nodes: &[[f64; 3]]) -> Part {
-    let skin = outer_faces(solid.cells.iter());
-    let at = |node: usize| Vector3::from(nodes[node]);
-    // V = ⅓ ∫ x·n dA.
-    let share = |t: WeightedTriangle| {
-        let [a, b, c] = t.nodes.map(at);
-        t.weight * a.dot(&b.cross(&c)) / 6.0
-    };
-    let volume: f64 = skin.iter().flat_map(split_face).map(share).sum();
-    let plate = |thickness: f64| Shell { theory: PlateTheory::Mindlin, ..Shell::new(material, thickness) };
-    let mut part = Part::new(&solid.name, skin, plate(0.0));
-    let area = part.area(nodes);
-    part.kind = plate(if area > 0.0 { 2.0 * volume / area } else { 0.0 }).into();
-    part
-}
-
 fn words(bytes: f64) -> String {
     let mebibytes = bytes / f64::from(1 << 20);
     if mebibytes < 1024.0 { format!("{mebibytes:.0} MiB") } else { format!("{:.1} GiB", mebibytes / 1024.0) }
@@ -252,7 +232,7 @@ fn words(bytes: f64) -> String {
 mod tests {
     use super::*;
     use crate::mesh::CellKind;
-    use crate::structure::Solid;
+    use crate::structure::{Material, Shell, Solid};
 
     /// Peaks of runs as the system counted them (VmHWM, two threads): square plates and rigs.
     #[test]

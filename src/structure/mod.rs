@@ -5,6 +5,7 @@
 //! to nodes. [`Assembled::prestress`] gives the geometric stiffness of a static state, [`Assembled::imported`] the same
 //! form to matrices of another program.
 
+mod as_plate;
 mod assembly;
 mod check;
 mod constraints;
@@ -25,6 +26,7 @@ mod ties;
 mod users;
 mod warnings;
 
+pub use as_plate::as_plate;
 pub use assembly::{Assembled, GeometricStiffness, assemble};
 pub use check::check;
 pub use dofs::{DofMap, FreeDof};

@@ -50,7 +50,7 @@ pub fn element_size(part: &Part, nodes: &[[f64; 3]]) -> f64 {
     let (mut sum, mut whole) = (0.0, 0.0);
     for face in &part.cells {
         let own: f64 = split_face(face).iter().map(|t| t.weight * area(t.nodes.map(|n| nodes[n]))).sum();
-        let square = if face.nodes().len() == 3 { 2.0 * own } else { own };
+        let square = if face.corners().len() == 3 { 2.0 * own } else { own };
         sum += own * square.sqrt();
         whole += own;
     }
