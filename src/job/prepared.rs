@@ -1,6 +1,7 @@
 //! A case made ready: mesh read and placed, structure assembled, contact pairs built.
 
 use super::contacts::{arrows, contact_pairs};
+use super::discs::discs;
 use super::imported::read_model;
 use super::links::in_terms_of_the_case;
 use super::mesh::read_mesh;
@@ -148,13 +149,9 @@ impl<'a> Prepared<'a> {
         SteadyOptions { penetration_limit: 0.5 * thinnest, ..SteadyOptions::default() }
     }
 
-    /// The shell parts that are discs, with their names.
+    /// The parts that are discs, with their names.
     pub fn discs(&self) -> Vec<(&str, Disc)> {
-        let disc = |part: &Part| {
-            let faces: Vec<&[usize]> = part.cells.iter().map(|face| face.nodes()).collect();
-            Disc::recognise(&faces, &self.model.nodes)
-        };
-        self.model.shells().filter_map(|(part, _)| Some((part.name.as_str(), disc(part)?))).collect()
+        discs(&self.model)
     }
 }
 

@@ -113,15 +113,7 @@ impl Geometry {
 fn drawn(cells: &[Cell]) -> Vec<Vec<usize>> {
     let (solids, others): (Vec<&Cell>, Vec<&Cell>) = cells.iter().partition(|cell| cell.dimension() == 3);
     let skin = outer_faces(solids.into_iter());
-    let faces = others.into_iter().chain(&skin);
-    faces
-        .flat_map(|cell| {
-            cell.kind()
-                .pieces()
-                .iter()
-                .map(|piece| piece.iter().map(|k| cell.nodes()[usize::from(*k)]).collect())
-        })
-        .collect()
+    others.into_iter().chain(&skin).flat_map(Cell::pieces).collect()
 }
 
 /// A displacement of every node: (ux, uy, uz, rx, ry, rz) \[m, rad\] in the order of [`Geometry::nodes`].

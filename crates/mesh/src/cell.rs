@@ -104,6 +104,12 @@ impl Cell {
         }
     }
 
+    /// The nodes of the points, lines, triangles and quadrilaterals that it can be drawn by ([`CellKind::pieces`]).
+    pub fn pieces(&self) -> impl Iterator<Item = Vec<usize>> + '_ {
+        let nodes = self.nodes();
+        self.kind.pieces().iter().map(|piece| piece.iter().map(|k| nodes[usize::from(*k)]).collect())
+    }
+
     /// The same cell whose nodes have other numbers.
     pub fn renumbered(&self, number: impl Fn(usize) -> usize) -> Cell {
         let mut cell = self.clone();

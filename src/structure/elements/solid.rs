@@ -11,7 +11,7 @@
 //! stress on any mesh (R. L. Taylor, P. J. Beresford & E. L. Wilson, Int. J. Numer. Meth. Eng. 10 (1976) 1211); they are
 //! eliminated in the element: K = K_uu − K_uα K_αα⁻¹ K_αu.
 
-use super::{ElementMatrix, FacePoint, FiniteElement};
+use super::{ElementMatrix, FiniteElement};
 use crate::mesh::{Cell, CellKind};
 use crate::structure::{Material, Solid};
 use nalgebra::{Matrix3, SMatrix, Vector3};
@@ -308,9 +308,5 @@ impl FiniteElement for SolidElement<'_> {
                 super::mean(self.cell.nodes(), self.coordinates)
             },
         )
-    }
-
-    fn displacement_at(&self, _at: &FacePoint) -> Option<Vec<[f64; 6]>> {
-        None
     }
 }
