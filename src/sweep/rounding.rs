@@ -10,7 +10,7 @@ const ROUNDING: f64 = 1e-12;
 const OF_MATRICES: f64 = 1e-14;
 /// Below this share of the largest |λ| a mode is zero but for rounding, which leaves λ² its share.
 const ZERO: f64 = 1e-7;
-/// Modes that differ by more than this share of |λ| are told apart without their shapes.
+/// Modes that differ by more than this share of |λ| are distinguished without their shapes.
 const APART: f64 = 0.01;
 
 /// What rounding may leave of σ of eigenvalue `k` \[1/s\], which shapes, one a column, judge better where they are known (no rows: not).
