@@ -18,8 +18,8 @@ choices! {
 declare! {
     /// Real modes of parts or of the whole.
     pub struct ModesAnalysis, checked by check_modes {
-        /// Regions of shells and bars; all of them when empty.
-        pub parts: Vec<String> = key::names("regions of shells and bars").or(Vec::new()),
+        /// Regions of shells, bars and solids; all of them when empty.
+        pub parts: Vec<String> = key::names("regions of shells, bars and solids").or(Vec::new()),
         /// Regions held in all degrees of freedom in this analysis only.
         pub clamp: Vec<String> = key::names("regions").or(Vec::new()),
         /// Supports, springs and rigid bodies of the case are left out.

@@ -13,9 +13,9 @@ declare! {
         /// The contact points themselves; only with matrices, where they stand for the regions.
         pub points: Option<ContactPoints> =
             key::value("the path of a table (CSV), or rows of normal, t1 and perhaps t2").optional(),
-        /// Region of the body: rim lines, a face, or a point.
+        /// Region of the body: rim lines or a face of a shell, faces of a solid, or a point.
         pub body: String = region(points.is_some(), "a region of rim lines, of faces, or of a point"),
-        /// Region of the counter-body, or `ground`.
+        /// The counter-body: a shell, a region of faces of a shell or a solid, or `ground`.
         pub counter: String = region(points.is_some(), "a region, or \"ground\""),
         /// Direction in which the body moves into the ground; only for a contact with the ground.
         pub into: Option<[f64; 3]> = key::direction().optional().invalidates(Invalidates::Interface),
@@ -206,7 +206,7 @@ declare! {
 choices! {
     /// Reference of a contact stiffness.
     pub enum StiffnessPer {
-        /// The one point nearest to the counter-body \[N/m\].
+        /// The one point nearest to the counter-body, on the ground the whole region, shared equally by its points \[N/m\].
         Point = "point",
         /// Length of a line contact \[N/m²\].
         Length = "length",

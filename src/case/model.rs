@@ -49,7 +49,7 @@ declare! {
     pub struct Solid {
         /// Material by name.
         pub material: String = key::name("the name of a material"),
-        /// Takes 4-node tetrahedra and 5-node pyramids, too, which are far too stiff in bending and shear (locking).
+        /// Takes 4-node tetrahedra, 5-node pyramids and 6-node wedges, too, which are far too stiff in bending and shear (locking).
         pub allow_locking: bool = key::flag(false),
     }
 }
@@ -157,7 +157,7 @@ declare! {
     pub struct Force {
         /// The region.
         pub on: String = key::name("a region"),
-        /// Total force \[N\].
+        /// Total force \[N\], shared equally by the nodes of the region.
         pub force: [f64; 3] = key::quantities(FORCE).expecting("three forces such as [0, \"1 N\", 0]"),
     }
 }

@@ -13,13 +13,13 @@ pub enum GroundFault {
     SlidesIntoTheGround,
 }
 
-/// Contact points of `nodes`, n_nodes, at `coordinates` \[m\] against rigid ground: g along `into`, t₁ along the part of
-/// `sliding` that is across it, t₂ = g × t₁. Gaps are zero, weights 1/n_nodes.
+/// Contact points of nodes at `coordinates` \[m\] against rigid ground, each with its weight: g along `into`, t₁ along the part of
+/// `sliding` that is across it, t₂ = g × t₁. Gaps are zero.
 ///
 /// # Errors
 /// Directions of which these cannot be made.
 pub fn ground_points(
-    nodes: &[usize],
+    nodes: &[(usize, f64)],
     coordinates: &[[f64; 3]],
     [into, sliding]: [[f64; 3]; 2],
     reduce: &Reduce<'_>,
@@ -31,10 +31,10 @@ pub fn ground_points(
         .ok_or(GroundFault::SlidesIntoTheGround)?;
     let t2 = g.cross(&t1);
     let direction = |node: usize, d: &Vector3<f64>| reduce(&[(node, 0, d.x), (node, 1, d.y), (node, 2, d.z)]);
-    let point = |node: &usize| ContactPoint {
+    let point = |(node, weight): &(usize, f64)| ContactPoint {
         position: coordinates[*node],
         gap: 0.0,
-        weight: 1.0 / nodes.len() as f64,
+        weight: *weight,
         normal: direction(*node, &g),
         tangents: [direction(*node, &t1), direction(*node, &t2)],
     };
@@ -52,7 +52,7 @@ mod tests {
             SparseVector::from_entries(terms.iter().map(|(node, axis, v)| (3 * node + axis, *v)))
         };
         let coordinates = [[0.0; 3], [1.0, 2.0, 3.0]];
-        let of = |directions| ground_points(&[1], &coordinates, directions, &reduce);
+        let of = |directions| ground_points(&[(1, 1.0)], &coordinates, directions, &reduce);
         let points = of([[0.0, 0.0, -2.0], [3.0, 0.0, 4.0]]).unwrap();
         let expected = |values: &[(usize, f64)]| SparseVector::from_entries(values.iter().copied());
         assert_eq!(points[0].normal, expected(&[(5, -1.0)]));

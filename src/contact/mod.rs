@@ -21,6 +21,7 @@ mod projection;
 mod slip;
 mod table;
 mod travel;
+mod tributary;
 
 pub use bristle::Bristle;
 pub use coefficient::{Coefficient, FrictionCoefficient};
@@ -32,3 +33,4 @@ pub use pairing::{ContactPatch, ContactSide, Reduce, Surfaces, pair_surfaces};
 pub use placement::{BodyPlacement, OffCounter, place};
 pub use table::FrictionTable;
 pub use travel::{Stations, mean_edge, travelled};
+pub use tributary::tributary;

@@ -1,6 +1,7 @@
 //! Contact points from the geometry of two bodies.
 
 use super::projection::{FaceGrid, Foot, FootShare, Vector, add, area_vector, cross, dot, scale, subtract};
+use super::tributary::tributary;
 use crate::error::{Error, Fault, Faults, Result};
 use crate::linalg::SparseVector;
 use crate::mesh::Cell;
@@ -192,30 +193,19 @@ struct Candidate {
 
 fn touching_nodes(surfaces: &Surfaces<'_>, place: &str) -> Result<Vec<Touching>> {
     let n = surfaces.nodes.len();
-    let mut weights = vec![0.0; n];
-    let mut named = vec![false; n];
     let area_of =
         |t: &WeightedTriangle| scale(t.weight, area_vector(&t.nodes.map(|node| surfaces.nodes[node])));
-    match surfaces.side {
-        ContactSide::Edge(lines) | ContactSide::Middle(lines) => {
-            for [a, b] in lines {
-                let side = subtract(surfaces.nodes[*b], surfaces.nodes[*a]);
-                for node in [*a, *b] {
-                    weights[node] += 0.5 * dot(side, side).sqrt();
-                    named[node] = true;
-                }
-            }
+    let lines: Vec<Cell>;
+    let cells: &[Cell] = match surfaces.side {
+        ContactSide::Edge(ends) | ContactSide::Middle(ends) => {
+            lines = ends.iter().copied().map(Cell::line).collect();
+            &lines
         }
-        ContactSide::Face(faces) => {
-            for triangle in faces.iter().flat_map(split_face) {
-                let area = area_of(&triangle);
-                for node in triangle.nodes {
-                    weights[node] += dot(area, area).sqrt() / 3.0;
-                    named[node] = true;
-                }
-            }
-        }
-    }
+        ContactSide::Face(faces) => faces,
+    };
+    let weights = tributary(surfaces.nodes, cells);
+    let mut named = vec![false; n];
+    cells.iter().flat_map(Cell::nodes).for_each(|node| named[*node] = true);
     let mut normals = vec![[0.0; 3]; n];
     let mut on_part = vec![false; n];
     let own = match (surfaces.body.as_shell(), surfaces.side) {

@@ -7,9 +7,10 @@ use super::regions::Regions;
 use crate::case::{Case, Contact, Pressing, StiffnessPer};
 use crate::contact::{
     Bristle, ContactPatch, ContactSide, GroundFault, NormalLaw, SlidingLaw, Surfaces, pair_surfaces,
+    tributary,
 };
 use crate::error::{Error, Fault, Faults, Result};
-use crate::mesh::Cell;
+use crate::mesh::{Cell, made_of};
 use crate::structure::{DofMap, Model};
 use crate::system::{Closing, ContactPair, ContactPoint};
 use nalgebra::Vector3;
@@ -93,6 +94,16 @@ fn law(name: &str, contact: &Contact) -> Result<SlidingLaw> {
     })
 }
 
+/// A stiffness per length on faces, per area on lines, or either on points.
+fn unfit(name: &str, per: StiffnessPer, natural: Option<StiffnessPer>) -> Error {
+    let word = StiffnessPer::word;
+    let expected = match natural.filter(|natural| *natural != StiffnessPer::Point) {
+        Some(natural) => format!("\"{}\" or \"point\" for this region", word(natural)),
+        None => "\"point\" for this region".to_string(),
+    };
+    Error::input(Fault::new(format!("`contact.{name}.normal.per`"), format!("\"{}\"", word(per)), expected))
+}
+
 /// Points of a region against rigid ground.
 fn ground_points(
     name: &str,
@@ -100,9 +111,20 @@ fn ground_points(
     regions: &Regions,
     dofs: &DofMap,
 ) -> Result<Vec<ContactPoint>> {
-    let nodes = regions.nodes(&contact.body, &format!("`contact.{name}.body`"))?;
+    let region = regions.region(&contact.body, &format!("`contact.{name}.body`"))?;
+    let nodes = regions.mesh.region_nodes(region);
+    let natural =
+        [StiffnessPer::Point, StiffnessPer::Length, StiffnessPer::Area].get(region.dimension).copied();
+    let weighted: Vec<(usize, f64)> = match contact.normal.per {
+        StiffnessPer::Point => nodes.iter().map(|node| (*node, 1.0 / nodes.len() as f64)).collect(),
+        per if Some(per) == natural => {
+            let weights = tributary(&regions.mesh.nodes, &regions.cells(region));
+            nodes.iter().map(|node| (*node, weights[*node])).collect()
+        }
+        per => return Err(unfit(name, per, natural)),
+    };
     let directions = [contact.into.unwrap_or_default(), contact.sliding_direction];
-    crate::contact::ground_points(&nodes, &regions.mesh.nodes, directions, &|terms| dofs.reduce(terms))
+    crate::contact::ground_points(&weighted, &regions.mesh.nodes, directions, &|terms| dofs.reduce(terms))
         .map_err(|fault| {
             let (key, found, expected) = match fault {
                 GroundFault::NoDirection => ("into", "no direction", "a direction"),
@@ -144,7 +166,7 @@ pub fn surface_points(
     let body = model.part_with(&nodes).ok_or_else(|| {
         Error::input(Fault::new(
             place("body"),
-            format!("region \"{}\", some of whose nodes are on no shell and no solid", contact.body),
+            format!("region \"{}\", whose nodes are not all on one shell or one solid", contact.body),
             "lines or faces on one of the case's shells, or faces on one of its solids",
         ))
     })?;
@@ -176,7 +198,7 @@ pub fn surface_points(
         _ => {
             return Err(Error::input(Fault::new(
                 place("body"),
-                format!("region \"{}\" of points", contact.body),
+                format!("region \"{}\" of {}", contact.body, made_of(region.dimension)),
                 "lines or faces; points can only touch the ground",
             )));
         }
@@ -184,16 +206,7 @@ pub fn surface_points(
     let patch = match contact.normal.per {
         StiffnessPer::Point => ContactPatch::Nearest(contact.reach),
         per if per == natural => ContactPatch::Reach(contact.reach),
-        per => {
-            return Err(Error::input(Fault::new(
-                place("normal.per"),
-                format!("\"{}\"", if per == StiffnessPer::Length { "length" } else { "area" }),
-                format!(
-                    "\"{}\" or \"point\" for this region",
-                    if natural == StiffnessPer::Length { "length" } else { "area" }
-                ),
-            )));
-        }
+        per => return Err(unfit(name, per, Some(natural))),
     };
     let moved = (stand.travel != 0.0)
         .then(|| crate::contact::travelled(&model.nodes, &faces, contact.sliding_direction, stand.travel));

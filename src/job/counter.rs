@@ -48,7 +48,7 @@ pub fn counter_faces<'a>(
     let nodes = regions.mesh.region_nodes(region);
     let Some(part) = model.part_with(&nodes) else {
         return Err(fault(
-            format!("region \"{name}\", some of whose nodes are on no shell and no solid"),
+            format!("region \"{name}\", whose nodes are not all on one shell or one solid"),
             "",
         ));
     };

@@ -169,7 +169,8 @@ impl Regions {
     /// The solids of region `name`; kinds that lock only where that is allowed.
     pub fn solids(&self, name: &str, allow_locking: bool, place: &str) -> Result<Vec<Cell>> {
         let region = self.region_of(name, 3, place)?;
-        let locks = |kind: CellKind| matches!(kind, CellKind::Tetrahedron4 | CellKind::Pyramid5);
+        let locks =
+            |kind: CellKind| matches!(kind, CellKind::Tetrahedron4 | CellKind::Pyramid5 | CellKind::Wedge6);
         let mut stiff = region.elements.iter().filter(|e| locks(self.mesh.elements[**e].kind()));
         if let Some(first) = stiff.next().filter(|_| !allow_locking) {
             let found = format!(
@@ -178,8 +179,8 @@ impl Regions {
                 self.mesh.element_place(*first),
                 self.mesh.elements[*first].kind().table().name
             );
-            let fault = Fault::new(place, found, "solids of second order, or hexahedra and wedges");
-            let help = "Mesh with 10-node tetrahedra: `gmsh -3 -order 2 model.geo -o model.msh`; `allow_locking = true` takes these";
+            let fault = Fault::new(place, found, "solids of second order, or 8-node hexahedra");
+            let help = "Mesh with second order: `gmsh -3 -order 2 model.geo -o model.msh`; `allow_locking = true` takes these";
             return Err(Error::input(fault.with_help(help)));
         }
         Ok(self.cells(region))

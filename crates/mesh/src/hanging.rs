@@ -1,7 +1,7 @@
 //! Nodes that lie on the edge of a face, or on a line, without being its nodes.
 
-use super::Mesh;
 use super::quality::{dot, minus, norm};
+use super::{Cell, Mesh};
 
 /// How far from an edge a node of it may lie, as a share of its length: more than the sagitta of an arc that is divided into 12.
 const NEAR: f64 = 0.03;
@@ -10,6 +10,27 @@ const END: f64 = 0.01;
 
 /// The most nodes that are compared with edges: many times those of any sound mesh, whose edges are short.
 const VISITS: usize = 200_000_000;
+
+/// The same of solids, whose cells meet along straight edges or share the nodes in their middle.
+const NEAR_SOLID: f64 = 1e-3;
+
+/// What an edge is of.
+#[derive(Clone, Copy)]
+enum Of {
+    /// One face or line.
+    One,
+    /// Several faces.
+    Several,
+    /// A face of the skin of solids.
+    Solids,
+}
+
+/// An edge with the nodes of its element.
+struct Edge<'a> {
+    ends: [usize; 2],
+    own: &'a [usize],
+    of: Of,
+}
 
 /// A node on an edge that does not have it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,13 +41,16 @@ pub(super) struct Hanging {
 }
 
 /// The nodes of faces and lines that lie between the ends of an edge which one face alone has, and which are no nodes of that face, and
-/// those between the ends of a line that is no edge of a face, as of a bar along a plate. Each node is there once, in ascending order.
+/// those between the ends of a line that is no edge of a face, as of a bar along a plate; the nodes on edges of a face of solids which
+/// does not have them, as of cells of first order beside those of second. Each node is there once, in ascending order.
 pub(super) fn hanging(mesh: &Mesh) -> Vec<Hanging> {
     let of = |dimension: usize| {
         mesh.elements.iter().enumerate().filter(move |(_, element)| element.dimension() == dimension)
     };
-    // An edge, the nodes of its element, and whether that alone has it.
-    let mut edges: Vec<([usize; 2], &[usize], bool)> = Vec::new();
+    // The faces that one solid alone has: with unlike cells side by side also those between them.
+    let skin: Vec<Cell> = mesh.skin(0..mesh.elements.len()).into_iter().map(|side| mesh.side(side)).collect();
+    let mut of_skin = vec![false; mesh.nodes.len()];
+    let mut edges: Vec<Edge> = Vec::new();
     let mut all: Vec<([usize; 2], usize)> = Vec::new();
     let (mut of_face, mut of_line) = (vec![false; mesh.nodes.len()], vec![false; mesh.nodes.len()]);
     for (e, face) in of(2) {
@@ -43,27 +67,35 @@ pub(super) fn hanging(mesh: &Mesh) -> Vec<Hanging> {
         n.iter().for_each(|node| of_line[*node] = true);
         let key = [n[0].min(n[1]), n[0].max(n[1])];
         if all.binary_search_by(|edge| edge.0.cmp(&key)).is_err() {
-            edges.push((key, n, true));
+            edges.push(Edge { ends: key, own: n, of: Of::One });
         }
+    }
+    for (face, n) in skin.iter().map(|face| (face.nodes(), face.corners())) {
+        face.iter().for_each(|node| of_skin[*node] = true);
+        edges.extend((0..n.len()).map(|i| Edge {
+            ends: [n[i], n[(i + 1) % n.len()]],
+            own: face,
+            of: Of::Solids,
+        }));
     }
     for same in all.chunk_by(|a, b| a.0 == b.0) {
         let first = mesh.elements[same[0].1].nodes();
         // A face may be listed twice, once for each of two regions.
         let alone =
             same[1..].iter().all(|(_, e)| mesh.elements[*e].nodes().iter().all(|node| first.contains(node)));
-        edges.push((same[0].0, first, alone));
+        edges.push(Edge { ends: same[0].0, own: first, of: if alone { Of::One } else { Of::Several } });
     }
     // Along a skew direction few nodes are between the ends of an edge.
     let along = |node: usize| dot(mesh.nodes[node], [0.577, 0.613, 0.541]);
     let mut order: Vec<(f64, usize)> = (0..mesh.nodes.len())
-        .filter(|node| of_face[*node] || of_line[*node])
+        .filter(|node| of_face[*node] || of_line[*node] || of_skin[*node])
         .map(|node| (along(node), node))
         .collect();
     order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     let mut found: Vec<Hanging> = Vec::new();
     let mut visits = VISITS;
-    for (edge, face, alone) in edges {
-        let [a, b] = edge;
+    for Edge { ends, own, of } in edges {
+        let [a, b] = ends;
         let way = minus(mesh.nodes[b], mesh.nodes[a]);
         let length = norm(way);
         let [low, high] = [along(a).min(along(b)) - NEAR * length, along(a).max(along(b)) + NEAR * length];
@@ -74,10 +106,14 @@ pub(super) fn hanging(mesh: &Mesh) -> Vec<Hanging> {
             let from = minus(mesh.nodes[*node], mesh.nodes[a]);
             let t = dot(from, way) / length.powi(2);
             let off = norm([0, 1, 2].map(|k| from[k] - t * way[k]));
-            // A node of a face beside an edge between two others is that of another surface.
-            let counts = alone || !of_face[*node];
-            if counts && (END..=1.0 - END).contains(&t) && off <= NEAR * length && !face.contains(node) {
-                found.push(Hanging { node: *node, edge });
+            let (counts, near) = match of {
+                Of::One => (of_face[*node] || of_line[*node], NEAR),
+                // A node of a face beside an edge between two others is that of another surface.
+                Of::Several => (of_line[*node] && !of_face[*node], NEAR),
+                Of::Solids => (of_skin[*node], NEAR_SOLID),
+            };
+            if counts && (END..=1.0 - END).contains(&t) && off <= near * length && !own.contains(node) {
+                found.push(Hanging { node: *node, edge: ends });
             }
         }
     }
@@ -89,8 +125,41 @@ pub(super) fn hanging(mesh: &Mesh) -> Vec<Hanging> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::generate::{Faces, structured_plate};
-    use crate::{Cell, diagnose};
+    use crate::diagnose;
+    use crate::generate::{Faces, structured_box, structured_plate};
+
+    /// Bars of two boxes of solids that share the nodes at equal places.
+    #[test]
+    fn unlike_solids_side_by_side_are_found() {
+        use crate::CellKind::{self, *};
+        let joined = |left: (CellKind, usize), right: (CellKind, usize)| {
+            let of = |(kind, n): (CellKind, usize)| structured_box(kind, [1.0; 3], [n; 3]).unwrap();
+            let (mut mesh, mut other) = (of(left), of(right));
+            [&mut mesh, &mut other].into_iter().for_each(|mesh| {
+                mesh.regions.truncate(1);
+                mesh.elements.truncate(mesh.regions[0].elements.len());
+            });
+            let mut number = Vec::new();
+            for x in other.nodes.iter().map(|x| [x[0] + 1.0, x[1], x[2]]) {
+                let same = mesh.nodes.iter().position(|y| norm(minus(x, *y)) < 1e-9);
+                number.push(same.unwrap_or_else(|| {
+                    mesh.nodes.push(x);
+                    mesh.nodes.len() - 1
+                }));
+            }
+            let first = mesh.elements.len();
+            mesh.elements.extend(other.elements.iter().map(|cell| cell.renumbered(|node| number[node])));
+            mesh.regions[0].elements.extend(first..mesh.elements.len());
+            hanging(&mesh).len()
+        };
+        for kind in [Hexahedron8, Hexahedron20, Hexahedron27] {
+            assert_eq!(joined((kind, 2), (kind, 2)), 0, "{kind:?}");
+            assert!(joined((kind, 1), (kind, 2)) > 0, "{kind:?}");
+        }
+        // The middles of the twelve edges of four faces.
+        assert_eq!(joined((Hexahedron8, 2), (Hexahedron20, 2)), 12);
+        assert_eq!(joined((Hexahedron20, 2), (Hexahedron8, 2)), 12);
+    }
 
     /// Two plates side by side, of `left` and `right` cells along the seam, which share the nodes at equal places.
     fn side_by_side(

@@ -12,18 +12,20 @@ pub struct Side {
     pub side: usize,
 }
 
-/// What two cells that share a face have in common: its corners, ascending.
-fn key(face: &Cell) -> [usize; 4] {
+/// What two cells that share a face have in common: its corners, ascending, and the number of its nodes.
+type Key = ([usize; 4], usize);
+
+fn key(face: &Cell) -> Key {
     let mut corners = [usize::MAX; 4];
     corners[..face.corners().len()].copy_from_slice(face.corners());
     corners.sort_unstable();
-    corners
+    (corners, face.nodes().len())
 }
 
 /// The sides that one cell alone has, of cells with their numbers, in their order.
 fn outer_sides<'a>(cells: impl Iterator<Item = (usize, &'a Cell)>) -> Vec<Side> {
-    let mut all: Vec<(Side, [usize; 4])> = Vec::new();
-    let mut count: HashMap<[usize; 4], usize> = HashMap::new();
+    let mut all: Vec<(Side, Key)> = Vec::new();
+    let mut count: HashMap<Key, usize> = HashMap::new();
     for (cell, sides) in cells.map(|(number, cell)| (number, cell.sides())) {
         for (side, face) in sides.enumerate() {
             let key = key(&face);

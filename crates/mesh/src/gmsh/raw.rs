@@ -40,6 +40,9 @@ pub(super) struct RawElement {
 /// The lines of a text file, so that what is there can be found; none of a binary one.
 pub(super) struct LineNumbers(Option<Vec<usize>>);
 
+/// The type of pyramids of 14 nodes.
+const PYRAMID_14: i64 = 14;
+
 impl LineNumbers {
     /// The lines of `bytes`.
     pub fn new(bytes: &[u8], encoding: Encoding) -> Self {
@@ -146,9 +149,15 @@ impl RawMesh {
         }
         let listed: Vec<String> =
             counts.iter().map(|(kind, count)| format!("{count} of type {kind}")).collect();
-        let found = format!("elements of third or higher order ({})", listed.join(", "));
+        let pyramids = counts.contains_key(&PYRAMID_14);
+        let what = if pyramids { "14-node pyramids or elements" } else { "elements" };
+        let found = format!("{what} of third or higher order ({})", listed.join(", "));
         let fault = Fault::new(place, found, "elements of first or second order");
-        let help = "Mesh again with second order: `gmsh -3 -order 2 model.geo -o model.msh`";
+        // 14-node pyramids have a node in the middle of their base.
+        let help = match pyramids {
+            true => "Mesh again with 13-node pyramids: in Gmsh `Mesh.SecondOrderIncomplete = 1;`",
+            false => "Mesh again with second order: `gmsh -3 -order 2 model.geo -o model.msh`",
+        };
         faults.push(fault.with_help(help));
     }
 
