@@ -242,3 +242,37 @@ pub fn arrows(contact: &Contact, regions: &Regions, model: &Model, points: &[Con
     };
     [press, sliding].map(|v| v.try_normalize(0.0).unwrap_or_default().into())
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::case::Case;
+    use crate::job::Prepared;
+
+    /// A stiffness per area or length counts the area of the faces or the length of the lines that touch the ground, one per point the region.
+    #[test]
+    fn contact_with_the_ground_counts_lengths_and_areas() {
+        let weights = |body: &str, per: &str| {
+            let text = format!(
+                "[mesh.plate]\nlength = 0.3\nwidth = 0.2\ncells_along = 3\ncells_across = 2\n[material.steel]\n\
+                 youngs_modulus = 2e11\npoissons_ratio = 0.3\ndensity = 8000\n[shell.plate]\nmaterial = \"steel\"\n\
+                 thickness = 0.001\n[contact.floor]\nbody = \"{body}\"\ncounter = \"ground\"\ninto = [0, 0, -1]\n\
+                 approach = 1e-6\nsliding_direction = [1, 0, 0]\nsliding_velocity = 1\n\
+                 normal = {{ per = \"{per}\", stiffness = 1e6 }}\nfriction = {{ law = \"coulomb\", mu0 = 0.3 }}\n\
+                 [modes.all]\ncount = 1\n"
+            );
+            let case = Case::parse("a.toml", &text, std::path::PathBuf::new()).unwrap();
+            let prepared = Prepared::new(&case).map_err(|error| error.to_string())?;
+            Ok::<f64, String>(prepared.system.points().map(|(_, point)| point.weight).sum())
+        };
+        let near = |found: Result<f64, String>, right: f64| {
+            let found = found.unwrap();
+            assert!((found / right - 1.0).abs() < 1e-14, "{found} {right}");
+        };
+        near(weights("plate", "area"), 0.06);
+        near(weights("plate_edge_y_min", "length"), 0.3);
+        near(weights("plate", "point"), 1.0);
+        for (body, per) in [("plate", "length"), ("plate_edge_y_min", "area")] {
+            assert!(weights(body, per).unwrap_err().contains("`contact.floor.normal.per`"));
+        }
+    }
+}

@@ -347,6 +347,18 @@ fn every_template_is_valid_and_runs() {
 }
 
 #[test]
+fn the_matrices_of_solids_are_a_case() {
+    let folder = TempDir::new().expect("a temporary folder");
+    let succeeds = |arguments: &[&str]| {
+        let output = stridor(folder.path(), arguments);
+        assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", text(&output.stderr));
+    };
+    succeeds(&["new", "brake", "--template", "solid"]);
+    succeeds(&["export", "brake/case.toml", "--out", "matrices"]);
+    succeeds(&["check", "matrices/case.toml"]);
+}
+
+#[test]
 fn wrong_case_files_are_refused_with_what_to_do() {
     let folder = TempDir::new().expect("a temporary folder");
     refused(&folder, 2, &["rig.toml", "no file there", "stridor new"]);

@@ -208,7 +208,7 @@ fn check_hanging(mesh: &Mesh, apart: &Apart, warnings: &mut Vec<Fault>) {
     }
     let regions_of = |holds: &dyn Fn(&[usize]) -> bool| -> Vec<usize> {
         let has = |region: &Region| {
-            (1..=2).contains(&region.dimension)
+            (1..=3).contains(&region.dimension)
                 && region.elements.iter().any(|e| holds(mesh.elements[*e].nodes()))
         };
         (0..mesh.regions.len()).filter(|r| has(&mesh.regions[*r])).collect()
