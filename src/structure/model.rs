@@ -4,9 +4,8 @@ use super::elements::waves::shear_coefficient;
 use super::elements::{FlatTriangle, split_face};
 use super::material::Material;
 use super::section::Section;
-use crate::mesh::{Cell, outer_faces};
+use crate::mesh::{Cell, outward};
 use crate::schema::{choices, dotted};
-use std::collections::HashMap;
 
 /// A structure: nodes and all that hangs on them. Degrees of freedom are (ux, uy, uz, rx, ry, rz) at every node.
 #[derive(Debug, Clone, Default)]
@@ -133,17 +132,7 @@ impl Part {
 
     /// Faces of a solid as seen from outside counter-clockwise; `None` where some are not on its skin. Those of a shell as they are.
     pub fn outward(&self, faces: Vec<Cell>) -> Option<Vec<Cell>> {
-        if self.kind.dimension() < 3 {
-            return Some(faces);
-        }
-        let key = |face: &Cell| {
-            let mut corners = face.corners().to_vec();
-            corners.sort_unstable();
-            corners
-        };
-        let skin: HashMap<Vec<usize>, Cell> =
-            outer_faces(self.cells.iter()).into_iter().map(|face| (key(&face), face)).collect();
-        faces.iter().map(|face| skin.get(&key(face)).cloned()).collect()
+        if self.kind.dimension() < 3 { Some(faces) } else { outward(self.cells.iter(), &faces) }
     }
 
     /// The shortest side of the box about its nodes, along the axes \[m\].

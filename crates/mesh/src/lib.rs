@@ -40,7 +40,7 @@ pub use gmsh::read;
 pub use info::Info;
 pub use kind::{CellKind, CellTable};
 pub use quadrature::QuadraturePoint;
-pub use skin::{Side, outer_faces};
+pub use skin::{Side, outer_faces, outward};
 pub use write::{to_msh, write};
 
 use stridor_base::error::{Error, Fault, Result, nearest};

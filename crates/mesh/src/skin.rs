@@ -43,6 +43,12 @@ pub fn outer_faces<'a>(solids: impl Iterator<Item = &'a Cell>) -> Vec<Cell> {
     sides.into_iter().filter_map(|Side { cell, side }| all[cell].sides().nth(side)).collect()
 }
 
+/// `faces` as seen from outside of some solids counter-clockwise; `None` where some are no outer faces of these.
+pub fn outward<'a>(solids: impl Iterator<Item = &'a Cell>, faces: &[Cell]) -> Option<Vec<Cell>> {
+    let skin: HashMap<Key, Cell> = outer_faces(solids).into_iter().map(|face| (key(&face), face)).collect();
+    faces.iter().map(|face| skin.get(&key(face)).cloned()).collect()
+}
+
 impl Mesh {
     /// The outer faces of the solids among `cells`, in the order of the cells.
     pub fn skin(&self, cells: impl IntoIterator<Item = usize>) -> Vec<Side> {
