@@ -13,11 +13,12 @@ use crate::linalg::c64;
 use crate::modal::RealModes;
 use crate::progress::Observer;
 use crate::results::{DampingRow, DampingVerdicts, MapResult, RunResults, SweepMethod, SweepResult};
-use crate::stability::{Family, FamilyFrame, SlidingState};
+use crate::stability::{ClosedContact, Family, FamilyFrame, SlidingState};
 use crate::sweep::{
     self, Answered, Axis, Boundary, Checked, CriticalKind, MapPoint, MeasuredProblem, SweepProblem,
 };
 use crate::system::{Damping, System};
+use std::f64::consts::TAU;
 
 /// The largest |Δλ|/|λ| at full order that is accepted.
 pub(super) const ACCURACY: f64 = 1e-8;
@@ -94,6 +95,8 @@ pub(super) struct Start<'a> {
     /// Without its sweeps.
     case: Case,
     condensed: Condensed,
+    /// The structure with its contact closed, where that has many points.
+    closed: Option<ClosedContact>,
     dampings: Vec<(String, f64, f64)>,
     /// The damping of the structure with each of them at its other value.
     others: Vec<Damping>,
@@ -108,7 +111,12 @@ impl<'a> Start<'a> {
         let k = tangent_stiffness(nominal.system, &nominal.steady.displacement)?;
         let condensed = Condensed::new(nominal.system, &k)?;
         let reference = Reference::new(nominal.system, nominal.real);
-        Ok(Start { nominal, case, condensed, dampings, others, reference })
+        let top = TAU * case.cea.as_ref().expect("a case with complex modes").band[1];
+        let closed = match nominal.system.skew() {
+            None => ClosedContact::of((nominal.system, nominal.steady), nominal.real, top, &())?,
+            Some(_) => None,
+        };
+        Ok(Start { nominal, case, condensed, closed, dampings, others, reference })
     }
 }
 
@@ -162,7 +170,10 @@ impl<'a> Explorer<'a> {
         let cea = case.cea.as_ref().expect("a case with complex modes");
         let displacement = &nominal.steady.displacement;
         let others = start.others.iter().collect();
-        let frame = FamilyFrame::new(nominal.system, displacement, nominal.real, others, cea.band)?;
+        let frame = match &start.closed {
+            Some(closed) => FamilyFrame::closed(closed, others, cea.band)?,
+            None => FamilyFrame::new(nominal.system, displacement, nominal.real, others, cea.band)?,
+        };
         Ok(Explorer { start, nominal, case, frame, known, observer })
     }
 }

@@ -80,7 +80,15 @@ impl OnFamily<'_> {
     }
 }
 
+/// Vectors of a reduced model up to which a search takes all the solutions that it may: of more, the fewer the more one costs.
+const CHEAP: f64 = 150.0;
+
 impl SweepProblem for OnFamily<'_> {
+    fn solutions_between(&self, points: usize) -> usize {
+        let cost = (self.family.dimension() as f64 / CHEAP).powi(3).max(1.0);
+        (((4000 + 20 * points) as f64 / cost) as usize).max(40 + 5 * points)
+    }
+
     fn modes(&self, at: &[f64]) -> Result<Modes> {
         let modes = self.family.modes(&self.states.at(at)?)?;
         Ok(Modes { eigenvalues: modes.eigenvalues, vectors: modes.vectors })

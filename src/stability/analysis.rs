@@ -29,7 +29,7 @@ const MOST_REFINEMENTS: usize = 6;
 /// The most static contact responses that enter the first basis; of more directions the residuals ask for what matters.
 const STATIC_RESPONSES: usize = 240;
 /// The E-norm below which a first correction is left out.
-const FIRST_TOLERANCE: f64 = 1e-6;
+pub(super) const FIRST_TOLERANCE: f64 = 1e-6;
 /// Two eigenvalues nearer than this part of |λ| may be taken for each other.
 const ALONE: f64 = 1e-6;
 /// An eigenvalue that moved by less than this part of |λ| is the same.

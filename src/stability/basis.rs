@@ -74,6 +74,11 @@ impl<'a> Basis<'a> {
         self.n_real() + self.added.ncols()
     }
 
+    /// How many vectors can be added: beyond that they are dependent.
+    fn room(&self) -> usize {
+        self.operator.n().saturating_sub(self.len())
+    }
+
     /// How many of the vectors, the first ones, are real modes.
     pub(super) fn n_real(&self) -> usize {
         self.modes.ncols()
@@ -125,7 +130,7 @@ impl<'a> Basis<'a> {
         if z.ncols() > WIDE && limit == usize::MAX {
             self.append_principal(z, tolerance);
         } else {
-            let new = self.largest(z.clone(), tolerance, limit);
+            let new = self.largest(z.clone(), tolerance, limit.min(self.room()));
             self.append(new.as_ref());
         }
         self.len() - old
@@ -194,7 +199,8 @@ impl<'a> Basis<'a> {
         energy -= product(share.transpose(), weighted.as_ref());
         let Ok((sizes, directions)) = symmetric_eigen(energy.as_ref()) else { return Mat::zeros(count, 0) };
         let floor = (tolerance * tolerance).max(DIGITS_LEFT * largest);
-        let kept: Vec<usize> = (0..sizes.len()).rev().filter(|j| sizes[*j] > floor).collect();
+        let large = (0..sizes.len()).rev().filter(|j| sizes[*j] > floor);
+        let kept: Vec<usize> = large.take(self.room()).collect();
         let directions = Mat::from_fn(count, kept.len(), |i, k| directions[(i, kept[k])]);
         let mix =
             Mat::from_fn(count, kept.len(), |i, k| directions[(i, k)] * (self.tau / sizes[kept[k]]).sqrt());

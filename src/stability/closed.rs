@@ -21,24 +21,30 @@ use faer::Mat;
 use std::f64::consts::TAU;
 
 /// The same linear system: K with K_σ and the springs of the contact, contact points without them, and its real modes.
-pub(super) struct ClosedContact {
+pub struct ClosedContact {
     pub(super) system: System,
     pub(super) steady: SteadySliding,
-    real: RealModes,
+    pub(super) real: RealModes,
     shifted: ShiftedStiffness,
+    /// k_gg of each point \[N/m\], which is part of K.
+    pub(super) springs: Vec<f64>,
 }
 
 impl ClosedContact {
     /// Of a system whose interface acts in more directions than there are `real` modes in a band up to `top` \[rad/s\]; none
     /// otherwise. The real modes reach as far as those given.
-    pub(super) fn of(
+    ///
+    /// # Errors
+    /// A stiffness that cannot be factorised; real modes that do not converge.
+    pub fn of(
         (system, steady): (&System, &SteadySliding),
         real: &RealModes,
         top: f64,
         observer: &dyn Observer,
     ) -> Result<Option<Self>> {
-        let springs = steady.points.iter().filter(|point| point.tangent.by_penetration[0] != 0.0).count();
-        let many = springs > 0 && Interface::new(system, steady).active(top).len() > real.len();
+        let springs: Vec<f64> = steady.points.iter().map(|point| point.tangent.by_penetration[0]).collect();
+        let many = springs.iter().any(|k| *k != 0.0)
+            && Interface::new(system, steady).active(top).len() > real.len();
         if !many || real.len() == system.n_dofs() {
             return Ok(None);
         }
@@ -49,7 +55,7 @@ impl ClosedContact {
         let mut steady = steady.clone();
         steady.points.iter_mut().for_each(|point| point.tangent.by_penetration[0] = 0.0);
         let system = System { structure, prestress: None, ..system.clone() };
-        Ok(Some(ClosedContact { system, steady, real, shifted }))
+        Ok(Some(ClosedContact { system, steady, real, shifted, springs }))
     }
 
     /// Its real modes and factors.

@@ -1,22 +1,24 @@
 //! One structure, many sliding states: everything large is done once, a state costs a small dense problem.
 
-use super::analysis::shifted_factor;
+use super::analysis::{FIRST_TOLERANCE, shifted_factor};
 use super::band::in_band;
 use super::basis::Basis;
 use super::block::Block;
+use super::closed::ClosedContact;
+use super::compact::{LARGE, Snapshots, near_band};
 use super::damper::{Between, Damper};
 use super::interface::{Interface, InterfaceTerm, terms_of_every_point};
 use super::operator::Operator;
 use super::reduced::{FamilyMatrices, Projection, ReducedModes};
 use super::refinement::{Corrections, MeasuredPairs, PairMeasurement, TOGETHER};
-use super::responses::interface_responses;
+use super::responses::{add_coupled_responses, interface_responses};
 use crate::equilibrium::{PointState, tangent_stiffness};
 use crate::error::Result;
+use crate::linalg::c64;
 use crate::linalg::dense::product;
 use crate::linalg::multivector::beside;
 use crate::linalg::sparse::times;
-use crate::linalg::{SymmetricFactor, c64};
-use crate::modal::RealModes;
+use crate::modal::{RealModes, ShiftedStiffness};
 use crate::system::{Damping, System};
 use faer::Mat;
 use std::f64::consts::TAU;
@@ -26,8 +28,10 @@ use std::f64::consts::TAU;
 pub struct FamilyFrame<'a> {
     system: &'a System,
     operator: Operator<'a>,
-    factor: Box<dyn SymmetricFactor>,
+    shifted: ShiftedStiffness,
     real: &'a RealModes,
+    /// The springs of the contact points that are part of K \[N/m\]; none where K is that of the open structure.
+    springs: &'a [f64],
     /// The other dampings; states weigh them with the system's own.
     dampings: Vec<&'a Damping>,
     /// \[rad/s\].
@@ -50,7 +54,12 @@ pub struct Family<'f> {
     basis: Basis<'f>,
     /// Closed contact springs of the reference stiffness: direction and N/m.
     springs: Vec<(usize, f64)>,
+    /// On the whole basis.
     reduced: FamilyMatrices,
+    /// Modes of the members on which it was trained.
+    snapshots: Snapshots,
+    /// On fewer vectors, where the basis is large.
+    compact: Option<FamilyMatrices>,
 }
 
 /// The complex modes of one state in the coordinates of its family, ascending in (ω, σ); one of each conjugate pair.
@@ -95,23 +104,53 @@ impl<'a> FamilyFrame<'a> {
         dampings: Vec<&'a Damping>,
         band_hz: [f64; 2],
     ) -> Result<Self> {
+        FamilyFrame::with((system, displacement, &[]), real, dampings, band_hz)
+    }
+
+    /// [`FamilyFrame::new`] of a structure closed by many contact points. States have their own stiffness of contact; the nearer it is
+    /// to that of the closed structure, the fewer vectors it takes.
+    ///
+    /// # Errors
+    /// As [`FamilyFrame::new`].
+    pub fn closed(closed: &'a ClosedContact, dampings: Vec<&'a Damping>, band_hz: [f64; 2]) -> Result<Self> {
+        let structure = (&closed.system, &*closed.steady.displacement, &*closed.springs);
+        FamilyFrame::with(structure, &closed.real, dampings, band_hz)
+    }
+
+    fn with(
+        (system, displacement, springs): (&'a System, &[f64], &'a [f64]),
+        real: &'a RealModes,
+        dampings: Vec<&'a Damping>,
+        band_hz: [f64; 2],
+    ) -> Result<Self> {
         let stiffness = tangent_stiffness(system, displacement)?;
         let operator =
             Operator::with_interface(system, stiffness, Interface::of_every_point(system), &dampings);
         let band = band_hz.map(|f| TAU * f);
-        let (factor, _) = shifted_factor(&operator, real, band)?;
-        Ok(FamilyFrame { system, operator, factor, real, dampings, band })
+        let (factor, shift) = shifted_factor(&operator, real, band)?;
+        let shifted = ShiftedStiffness { shift, factor };
+        Ok(FamilyFrame { system, operator, shifted, real, springs, dampings, band })
+    }
+
+    /// The least frequency by which reduced models are balanced \[rad/s\].
+    fn floor(&self) -> f64 {
+        1e-3 * self.band[1]
     }
 
     fn terms(&self, state: &SlidingState) -> Vec<InterfaceTerm> {
-        terms_of_every_point(self.system, &state.points)
+        if self.springs.is_empty() {
+            return terms_of_every_point(self.system, &state.points);
+        }
+        let mut points = state.points.clone();
+        points.iter_mut().zip(self.springs).for_each(|(point, k)| point.tangent.by_penetration[0] -= k);
+        terms_of_every_point(self.system, &points)
     }
 }
 
 impl<'f> Family<'f> {
-    /// A family spanned by the real modes, the static responses A⁻¹W to every direction in which a contact of any of
-    /// the `states` has a force, and the next term of their series in ω², A⁻¹M A⁻¹W. These do not depend on friction
-    /// or load; [`Family::train`] adds what a state still lacks.
+    /// A family spanned by the real modes and the responses to every direction in which a contact of any of the `states` has a
+    /// force: A⁻¹W and the next term of their series in ω², A⁻¹M A⁻¹W; of more directions than real modes, what the forces of
+    /// some combinations of the modes have in common. [`Family::train`] adds what a state still lacks.
     ///
     /// # Errors
     /// A projection that is not definite: parts without mass.
@@ -121,23 +160,34 @@ impl<'f> Family<'f> {
         let springs: Vec<(usize, f64)> = terms
             .iter()
             .filter(|t| t.row == t.column && t.row < 3 * frame.system.points().count() && t.row % 3 == 0)
-            .map(|t| (t.row, t.stiffness))
+            .map(|t| (t.row, t.stiffness.max(0.0)))
             .collect();
         let mut basis = Basis::new(&frame.operator, frame.real.shapes.as_ref(), frame.band[1].powi(2));
         let top = frame.band[1];
-        let first = interface_responses(&frame.operator.with_terms(terms, &[]), &*frame.factor, top);
-        let mut second = times(frame.operator.mass, first.as_ref());
-        second *= faer::Scale(top * top);
-        frame.factor.solve_in_place(second.as_mut());
-        basis.enrich(&first, 1e-9, STATIC);
-        basis.enrich(&second, 1e-6, STATIC);
-        let reduced = reduce(frame, &basis, &springs)?;
-        Ok(Family { frame, basis, springs, reduced })
+        let weights = states.first().map_or(&[][..], |state| &state.damping_weights);
+        let operator = frame.operator.with_terms(terms, weights);
+        if operator.interface.active(top).len() > frame.real.len() {
+            add_coupled_responses(&operator, &mut basis, &frame.shifted, top, FIRST_TOLERANCE);
+        } else {
+            let first = interface_responses(&operator, &*frame.shifted.factor, top);
+            let mut second = times(frame.operator.mass, first.as_ref());
+            second *= faer::Scale(top * top);
+            frame.shifted.factor.solve_in_place(second.as_mut());
+            basis.enrich(&first, 1e-9, STATIC);
+            basis.enrich(&second, 1e-6, STATIC);
+        }
+        let reduced = FamilyMatrices::new(&project(frame, &basis), &springs, frame.floor())?;
+        let (snapshots, compact) = (Snapshots::default(), None);
+        Ok(Family { frame, basis, springs, reduced, snapshots, compact })
     }
 
     /// The size of the reduced model.
     pub fn dimension(&self) -> usize {
-        self.basis.len()
+        self.matrices().rotation.ncols()
+    }
+
+    fn matrices(&self) -> &FamilyMatrices {
+        self.compact.as_ref().unwrap_or(&self.reduced)
     }
 
     /// The modes of `state`: a small dense problem. Safe to call from many threads.
@@ -145,7 +195,7 @@ impl<'f> Family<'f> {
     /// # Errors
     /// Numbers that are not finite.
     pub fn modes(&self, state: &SlidingState) -> Result<FamilyModes> {
-        let modes = self.solve(state)?;
+        let modes = self.solve(self.matrices(), state)?;
         Ok(FamilyModes { eigenvalues: modes.eigenvalues, vectors: modes.right })
     }
 
@@ -155,7 +205,7 @@ impl<'f> Family<'f> {
     /// As [`Family::modes`].
     pub fn eigenvalues(&self, state: &SlidingState) -> Result<Vec<c64>> {
         let band = self.frame.band;
-        self.reduced.eigenvalues(&self.frame.terms(state), &state.damping_weights, |z| in_band(z, band))
+        self.matrices().eigenvalues(&self.frame.terms(state), &state.damping_weights, |z| in_band(z, band))
     }
 
     /// Measures the modes of `state` on the full order.
@@ -163,7 +213,8 @@ impl<'f> Family<'f> {
     /// # Errors
     /// As [`Family::modes`].
     pub fn check(&self, state: &SlidingState) -> Result<FamilyCheck> {
-        Ok(self.measure(state, &self.solve(state)?).0)
+        let matrices = self.matrices();
+        Ok(self.measure(matrices, state, &self.solve(matrices, state)?).0)
     }
 
     /// [`Family::check`] of the one mode whose λ is nearest to `near`; empty where there is no mode.
@@ -171,7 +222,8 @@ impl<'f> Family<'f> {
     /// # Errors
     /// As [`Family::modes`].
     pub fn check_nearest(&self, state: &SlidingState, near: c64) -> Result<FamilyCheck> {
-        let modes = self.solve(state)?;
+        let matrices = self.matrices();
+        let modes = self.solve(matrices, state)?;
         let far = |k: &usize| (modes.eigenvalues[*k] - near).norm();
         let nearest = (0..modes.eigenvalues.len()).min_by(|a, b| far(a).total_cmp(&far(b)));
         let of = |k: usize, vectors: &Mat<c64>| Mat::from_fn(vectors.nrows(), 1, |i, _| vectors[(i, k)]);
@@ -181,7 +233,7 @@ impl<'f> Family<'f> {
             left: of(k, &modes.left),
             steepness: vec![modes.steepness[k]],
         };
-        Ok(nearest.map_or(FamilyCheck::default(), |k| self.measure(state, &one(k)).0))
+        Ok(nearest.map_or(FamilyCheck::default(), |k| self.measure(matrices, state, &one(k)).0))
     }
 
     /// Enriches the family until the modes of `state` are right at full order, as [`super::complex_modes`] does for a
@@ -191,34 +243,63 @@ impl<'f> Family<'f> {
     /// As [`Family::new`].
     pub fn train(&mut self, state: &SlidingState) -> Result<FamilyCheck> {
         const REFINEMENTS: i32 = 6;
-        let (mut check, mut wanted) = self.measure(state, &self.solve(state)?);
+        let measure = |of: &Self| -> Result<_> {
+            let modes = of.solve(&of.reduced, state)?;
+            Ok(of.measure(&of.reduced, state, &modes))
+        };
+        let (mut check, mut wanted) = measure(self)?;
         for k in 0..REFINEMENTS {
             if wanted.is_empty() {
                 break;
             }
-            let corrections = wanted.corrections(&*self.frame.factor);
-            if self.basis.enrich(&corrections, 1e-6 * 0.01f64.powi(k), usize::MAX) == 0 {
+            let corrections = wanted.corrections(&*self.frame.shifted.factor);
+            if self.basis.enrich(&corrections, FIRST_TOLERANCE * 0.01f64.powi(k), usize::MAX) == 0 {
                 break;
             }
-            self.reduced = reduce(self.frame, &self.basis, &self.springs)?;
-            (check, wanted) = self.measure(state, &self.solve(state)?);
+            self.reduced =
+                FamilyMatrices::new(&project(self.frame, &self.basis), &self.springs, self.frame.floor())?;
+            (check, wanted) = measure(self)?;
+        }
+        if self.basis.len() > LARGE {
+            self.make_compact(state)?;
         }
         Ok(check)
     }
 
-    fn solve(&self, state: &SlidingState) -> Result<ReducedModes> {
+    /// Adds the modes of `state`, on which the basis is trained, to the snapshots.
+    fn make_compact(&mut self, state: &SlidingState) -> Result<()> {
+        let (frame, band) = (self.frame, self.frame.band);
+        let wanted = |z| near_band(z, band);
+        let modes = self.reduced.solve(&frame.terms(state), &state.damping_weights, wanted)?;
+        self.snapshots.add(self.reduced.rotation.as_ref(), &modes);
+        let fewer = self.snapshots.compact(&project(frame, &self.basis), band[1].powi(2));
+        let matrices = |(projection, basis): (Projection, Mat<f64>)| {
+            let mut matrices = FamilyMatrices::new(&projection, &self.springs, frame.floor())?;
+            matrices.rotation = product(basis.as_ref(), matrices.rotation.as_ref());
+            Ok(matrices)
+        };
+        self.compact = fewer.map(matrices).transpose()?;
+        Ok(())
+    }
+
+    fn solve(&self, matrices: &FamilyMatrices, state: &SlidingState) -> Result<ReducedModes> {
         let band = self.frame.band;
-        self.reduced.solve(&self.frame.terms(state), &state.damping_weights, |z| in_band(z, band))
+        matrices.solve(&self.frame.terms(state), &state.damping_weights, |z| in_band(z, band))
     }
 
     /// Some modes of `state` on the full order, and what those ask for that are not exact.
-    fn measure(&self, state: &SlidingState, modes: &ReducedModes) -> (FamilyCheck, Corrections) {
+    fn measure(
+        &self,
+        matrices: &FamilyMatrices,
+        state: &SlidingState,
+        modes: &ReducedModes,
+    ) -> (FamilyCheck, Corrections) {
         let operator = self.frame.operator.with_terms(self.frame.terms(state), &state.damping_weights);
-        let (basis, factor) = (&self.basis, &*self.frame.factor);
+        let (basis, factor) = (&self.basis, &*self.frame.shifted.factor);
         let scale = PairMeasurement { operator: &operator, basis, factor, top: self.frame.band[1] };
         let turned = |y: &Mat<c64>, first: usize, count: usize| {
             let y = Block::from_fn(y.nrows(), count, |i, j| y[(i, first + j)]);
-            y.map(|y| product(self.reduced.rotation.as_ref(), y))
+            y.map(|y| product(matrices.rotation.as_ref(), y))
         };
         let mut wanted = Corrections::of_at_most(modes.eigenvalues.len());
         let (mut check, mut measured) = (FamilyCheck::default(), MeasuredPairs::default());
@@ -238,19 +319,19 @@ impl<'f> Family<'f> {
     }
 }
 
-/// Projects every damping on the basis and diagonalises.
-fn reduce(frame: &FamilyFrame<'_>, basis: &Basis<'_>, springs: &[(usize, f64)]) -> Result<FamilyMatrices> {
+/// The matrices and every damping in coordinates of the basis.
+fn project(frame: &FamilyFrame<'_>, basis: &Basis<'_>) -> Projection {
     let parts = basis.between();
     let whole = |form: &dyn Fn(&Between<'_>) -> Mat<f64>| {
         let [of_modes, of_added] = parts.each_ref().map(form);
         beside(of_modes.as_ref(), of_added.as_ref())
     };
-    let project = |(d, damper): (&&Damping, &Damper<'_>)| {
+    let damping = |(d, damper): (&&Damping, &Damper<'_>)| {
         let loss = d.hysteretic.as_ref().map(|_| whole(&|of| damper.loss.form(of)));
         (whole(&|of| damper.viscous_form(of)), loss)
     };
-    let variants: Vec<_> = frame.dampings.iter().zip(&frame.operator.dampers[1..]).map(project).collect();
-    let projection = Projection {
+    let variants: Vec<_> = frame.dampings.iter().zip(&frame.operator.dampers[1..]).map(damping).collect();
+    Projection {
         mass: basis.mass.clone(),
         stiffness: basis.stiffness.clone(),
         damping: std::iter::once(&basis.damping).chain(variants.iter().map(|v| &v.0)).cloned().collect(),
@@ -259,8 +340,7 @@ fn reduce(frame: &FamilyFrame<'_>, basis: &Basis<'_>, springs: &[(usize, f64)]) 
             .cloned()
             .collect(),
         interface: basis.interface.clone(),
-    };
-    FamilyMatrices::new(&projection, springs, 1e-3 * frame.band[1])
+    }
 }
 
 /// Every entry that any of the lists has, with its largest stiffness and damping.

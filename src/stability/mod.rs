@@ -15,6 +15,7 @@ mod block;
 mod budget;
 mod certificate;
 mod closed;
+mod compact;
 mod damper;
 #[cfg(test)]
 mod doubles;
@@ -45,6 +46,7 @@ pub use advice::PointRates;
 pub use analysis::{complex_eigenvalues, complex_modes};
 pub use band::Band;
 pub use certificate::{Certificate, CloseCall, SLOWEST_GROWTH, certified_modes};
+pub use closed::ClosedContact;
 pub use family::{Family, FamilyCheck, FamilyFrame, FamilyModes, SlidingState};
 pub use filter::{ModalFilter, modal_filter};
 pub use full_order::{Confirmation, confirm};

@@ -29,6 +29,20 @@ pub(super) struct Projection {
     pub(super) interface: Mat<f64>,
 }
 
+impl Projection {
+    /// The projection on the columns of `basis`.
+    pub(super) fn onto(&self, basis: MatRef<'_, f64>) -> Projection {
+        let form = |a: &Mat<f64>| product(basis.transpose(), product(a.as_ref(), basis).as_ref());
+        Projection {
+            mass: form(&self.mass),
+            stiffness: form(&self.stiffness),
+            damping: self.damping.iter().map(form).collect(),
+            hysteretic: self.hysteretic.iter().map(|h| h.as_ref().map(form)).collect(),
+            interface: product(basis.transpose(), self.interface.as_ref()),
+        }
+    }
+}
+
 /// The modes of a reduced model, ascending in (Im λ, Re λ).
 #[derive(Debug, Clone)]
 pub(super) struct ReducedModes {

@@ -1,0 +1,130 @@
+//! A smaller basis for the members of a family, by proper orthogonal decomposition of the modes of some of them.
+//!
+//! The modes in the band change smoothly with the scalars of a family, so that those of a few members nearly span those of all
+//! (L. Sirovich, Quart. Appl. Math. 45 (1987) 561; with right and left vectors the error of λ is of second order). A basis that is
+//! right at full order has the responses to every contact direction besides, by which the small dense problems of thousands of
+//! members cost too much.
+
+use super::band::in_band;
+use super::reduced::{Projection, ReducedModes};
+use crate::linalg::c64;
+use crate::linalg::dense::{product, symmetric_eigen};
+use faer::{Mat, MatRef};
+
+/// A reduced model of more vectors than this is made smaller.
+pub(super) const LARGE: usize = 160;
+/// Principal directions below this part of a snapshot are left out; each is one in the E-norm.
+const TOLERANCE: f64 = 3e-5;
+/// The band of the snapshots is wider on both sides by this factor.
+const WIDER: f64 = 1.2;
+
+/// Whether λ is one of a snapshot.
+pub(super) fn near_band(z: c64, [low, high]: [f64; 2]) -> bool {
+    in_band(z, [low / WIDER, high * WIDER])
+}
+
+/// Real and imaginary parts of right and left vectors of some members, one a column, in coordinates of a basis that may have
+/// grown since.
+#[derive(Default)]
+pub(super) struct Snapshots(Vec<Mat<f64>>);
+
+impl Snapshots {
+    /// Adds the `modes` of a member, given by the `rotation` of their reduced model.
+    pub(super) fn add(&mut self, rotation: MatRef<'_, f64>, modes: &ReducedModes) {
+        for vectors in [&modes.right, &modes.left] {
+            for part in [|z: &c64| z.re, |z: &c64| z.im] {
+                let part = Mat::from_fn(vectors.nrows(), vectors.ncols(), |i, j| part(&vectors[(i, j)]));
+                self.0.push(product(rotation, part.as_ref()));
+            }
+        }
+    }
+
+    /// The projection on their principal directions in the E-norm, E = K + τ M, and these; `None` where they are not fewer than half
+    /// of the basis.
+    pub(super) fn compact(&self, projection: &Projection, tau: f64) -> Option<(Projection, Mat<f64>)> {
+        let m = projection.mass.nrows();
+        let energy = &projection.stiffness + faer::Scale(tau) * &projection.mass;
+        let columns = self.0.iter().flat_map(|part| part.col_iter());
+        let mut snapshots = Mat::<f64>::zeros(m, self.0.iter().map(|part| part.ncols()).sum());
+        for (all, one) in snapshots.as_mut().col_iter_mut().zip(columns) {
+            all.subrows_mut(0, one.nrows()).copy_from(one);
+        }
+        let image = product(energy.as_ref(), snapshots.as_ref());
+        let length = |j: usize| (snapshots.col(j).transpose() * image.col(j)).max(0.0).sqrt();
+        let lengths: Vec<f64> = (0..snapshots.ncols()).map(length).collect();
+        let scale = |j: usize| if lengths[j] > 0.0 { 1.0 / lengths[j] } else { 0.0 };
+        let gram = product(snapshots.transpose(), image.as_ref());
+        let gram = Mat::from_fn(gram.nrows(), gram.ncols(), |i, j| scale(i) * gram[(i, j)] * scale(j));
+        let (sizes, directions) = symmetric_eigen(gram.as_ref()).ok()?;
+        let kept: Vec<usize> = (0..sizes.len()).rev().filter(|k| sizes[*k] > TOLERANCE * TOLERANCE).collect();
+        if 2 * kept.len() > m {
+            return None;
+        }
+        let mix = Mat::from_fn(sizes.len(), kept.len(), |i, k| {
+            scale(i) * directions[(i, kept[k])] / sizes[kept[k]].sqrt()
+        });
+        let basis = product(snapshots.as_ref(), mix.as_ref());
+        Some((projection.onto(basis.as_ref()), basis))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::{damped, dense_eigenvalues, dense_modes, nearest, steady};
+    use super::super::{ClosedContact, Family, FamilyFrame, SlidingState};
+    use super::LARGE;
+    use crate::equilibrium::SteadySliding;
+    use crate::equilibrium::samples::random_system;
+    use crate::linalg::bounds::within;
+    use crate::linalg::c64;
+    use std::f64::consts::TAU;
+
+    /// More directions of contact than real modes: between the members on which it was trained a family has the modes of the dense
+    /// problem, for friction from none to its double and half to three times the stiffness of contact, on few vectors.
+    #[test]
+    fn many_contact_points_are_served_by_few_vectors() {
+        for (seed, power) in [(2, 4), (3, 5)] {
+            let system = damped(random_system(200, 40, 20.0, 900 + seed), seed);
+            let mut reference = steady(&system);
+            for point in &mut reference.points {
+                point.tangent.by_penetration.iter_mut().for_each(|k| *k *= 10f64.powi(power));
+            }
+            let real = dense_modes(&system, 40);
+            let band = [0.01, 0.5 * (real.frequency_hz(7) + real.frequency_hz(8))];
+            let closed =
+                ClosedContact::of((&system, &reference), &real, TAU * band[1], &()).unwrap().unwrap();
+            let frame = FamilyFrame::closed(&closed, Vec::new(), band).unwrap();
+            let at = |friction: f64, stiffness: f64| {
+                let mut state = reference.clone();
+                for point in &mut state.points {
+                    let k = &mut point.tangent.by_penetration;
+                    *k = [k[0] * stiffness, k[1] * friction * stiffness, k[2] * friction * stiffness];
+                }
+                state
+            };
+            let member = |state: &SteadySliding| SlidingState {
+                points: state.points.clone(),
+                damping_weights: vec![1.0],
+            };
+            let trained = [(0.0, 0.5), (2.0, 0.5), (0.0, 3.0), (2.0, 3.0), (1.0, 1.0)]
+                .map(|(friction, stiffness)| member(&at(friction, stiffness)));
+            let mut family = Family::new(&frame, &trained).unwrap();
+            for member in &trained {
+                family.train(member).unwrap();
+            }
+            assert!(family.dimension() < LARGE, "seed {seed}: {}", family.dimension());
+            for (friction, stiffness) in [(0.4, 0.7), (1.6, 2.0), (1.3, 1.0)] {
+                let state = at(friction, stiffness);
+                let exact: Vec<c64> = dense_eigenvalues(&system, &state, band);
+                let (found, check) =
+                    (family.modes(&member(&state)).unwrap(), family.check(&member(&state)).unwrap());
+                assert_eq!(found.eigenvalues.len(), exact.len(), "seed {seed}");
+                for (z, estimate) in found.eigenvalues.iter().zip(&check.eigenvalue_errors) {
+                    let error = (z - nearest(*z, &exact)).norm() / z.norm();
+                    assert!(within(error, 1e-6, "interpolation between the members"), "seed {seed}: {z}");
+                    assert!(error < 10.0 * estimate + 1e-10, "seed {seed}: {error:.1e} {estimate:.1e}");
+                }
+            }
+        }
+    }
+}
