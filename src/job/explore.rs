@@ -112,10 +112,7 @@ impl<'a> Start<'a> {
         let condensed = Condensed::new(nominal.system, &k)?;
         let reference = Reference::new(nominal.system, nominal.real);
         let top = TAU * case.cea.as_ref().expect("a case with complex modes").band[1];
-        let closed = match nominal.system.skew() {
-            None => ClosedContact::of((nominal.system, nominal.steady), nominal.real, top, &())?,
-            Some(_) => None,
-        };
+        let closed = ClosedContact::of((nominal.system, nominal.steady), nominal.real, top, &())?;
         Ok(Start { nominal, case, condensed, closed, dampings, others, reference })
     }
 }
@@ -217,10 +214,6 @@ impl Explorer<'_> {
     }
 
     fn keeps_the_structure(&self, paths: &[String]) -> Result<bool> {
-        // Sparse skew parts are known at full order only.
-        if self.nominal.system.skew().is_some() {
-            return Ok(false);
-        }
         let each =
             paths.iter().map(|path| keeps_the_structure(self.case, path)).collect::<Result<Vec<bool>>>()?;
         Ok(each.iter().all(|keeps| *keeps))
@@ -385,7 +378,7 @@ impl Explorer<'_> {
     /// ζ from half to twice its value.
     fn damping(&self) -> Result<Option<DampingVerdicts>> {
         let ratio = self.case.damping.modal_ratio;
-        if ratio <= 0.0 || self.nominal.system.skew().is_some() {
+        if ratio <= 0.0 {
             return Ok(None);
         }
         let range = [0.5 * ratio, (2.0 * ratio).min(0.999)];

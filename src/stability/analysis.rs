@@ -4,7 +4,6 @@ use super::band::{Band, in_band};
 use super::basis::Basis;
 use super::block::Block;
 use super::closed::{ClosedContact, share_out};
-use super::general::general_modes;
 use super::operator::Operator;
 use super::post_processing::post_processed;
 use super::projected::{SmallPair, project_interface, solve};
@@ -37,57 +36,6 @@ const UNMOVED: f64 = 1e-10;
 /// A condition number of λ above this is reported.
 const ILL_CONDITIONED: f64 = 1e6;
 
-/// The complex eigenvalues λ = σ + iω \[1/s\] with ω/2π in `band_hz` and their modes: see [`complex_modes`].
-///
-/// # Errors
-/// As [`complex_modes`].
-pub fn complex_eigenvalues(
-    system: &System,
-    steady: &SteadySliding,
-    real: &RealModes,
-    band_hz: [f64; 2],
-) -> Result<ComplexModes> {
-    complex_modes(system, steady, real, band_hz, &())
-}
-
-/// All complex modes with a frequency in `band`, or those of them that it asks for, of `system` sliding steadily.
-///
-/// * Basis: the real modes (of K + K_σ and M, M-orthonormal, best up to twice the band) and A⁻¹W, A = K + K_σ − s M at
-///   a shift s inside the band, for every direction in which the contact has a force, with some more terms of their
-///   series in ω². When there are more directions than real modes, a sketch of the responses to damping and interface
-///   represents them, and contact springs are part of K (`closed`).
-/// * Every pair is measured on the full order. Its corrections z = −A⁻¹Q(λ)φ and, for the left vector, −A⁻¹Q(λ)ᴴψ show
-///   no contact motion where A⁻¹W is in the basis: so the same real symmetric factor serves every pair, whatever the
-///   friction. They enrich the basis until η and the eigenvalue error are small, in six refinement steps at most; pairs that are
-///   right are not measured again.
-/// * ψᴴQ(λ)φ vanishes identically after a projection, so the error of λ is estimated with the *correction* of the left
-///   vector: |z_ψᴴ Q(λ)φ| / |ψᴴ(2λM + C + C_c)φ|. As A is symmetric, z_ψᴴ Q(λ)φ = ψᴴQ(λ)z, so that only the right
-///   corrections are solved for, and the left ones of the pairs that are not yet right; others need no left vector on the
-///   full order.
-///
-/// Where the system has sparse skew parts ([`System::skew`]) the modes come from two-level Arnoldi at full order instead.
-///
-/// Modes with ω = 0 (overdamped, or divergence when σ > 0) are given when the band begins at zero. For them and near
-/// λ = 0 the eigenvalue error is relative to 1e-6 of the band's top rather than to |λ|.
-///
-/// # Errors
-/// A band that is none; real modes of another system; a projected problem that cannot be solved.
-pub fn complex_modes<'a>(
-    system: &System,
-    steady: &SteadySliding,
-    known: impl Into<Structural<'a>>,
-    band: impl Into<Band>,
-    observer: &dyn Observer,
-) -> Result<ComplexModes> {
-    let (known, band) = (known.into(), band.into());
-    if system.skew().is_some() {
-        check(system, steady, known.real, band.hz)?;
-        return general_modes(&Operator::new(system, steady)?, known.real, band, observer)
-            .map(|found| found.modes);
-    }
-    analyse(system, steady, known, band, observer, |_, _| ()).map(|(modes, ())| modes)
-}
-
 /// Data of an analysis with its modes found.
 pub(super) struct CompletedAnalysis<'a> {
     pub(super) operator: &'a Operator<'a>,
@@ -100,7 +48,7 @@ pub(super) struct CompletedAnalysis<'a> {
     pub(super) band_hz: [f64; 2],
 }
 
-/// [`complex_modes`], and what `then` makes of them and the analysis.
+/// `complex_modes` of a projection, and what `then` makes of them and the analysis.
 pub(super) fn analyse<'a, T>(
     system: &System,
     steady: &SteadySliding,
@@ -327,7 +275,11 @@ pub(super) fn shifted_factor(
 
 /// The pairs of the projected problem in the band.
 fn small_pairs(operator: &Operator<'_>, basis: &Basis<'_>, band: [f64; 2]) -> Result<Vec<SmallPair>> {
-    let (unsymmetric_damping, unsymmetric_stiffness) = project_interface(operator, basis);
+    let (mut unsymmetric_damping, mut unsymmetric_stiffness) = project_interface(operator, basis);
+    if let Some([circulatory, gyroscopic]) = &basis.skew {
+        unsymmetric_stiffness += circulatory;
+        unsymmetric_damping += gyroscopic;
+    }
     let stiffness = &basis.stiffness + unsymmetric_stiffness;
     solve(
         &basis.mass,

@@ -39,6 +39,8 @@ pub(super) struct Basis<'a> {
     pub(super) damping: Mat<f64>,
     pub(super) stiffness: Mat<f64>,
     pub(super) hysteretic: Option<Mat<f64>>,
+    /// Bᵀ(·)B of the sparse skew parts of K and C, where there are any.
+    pub(super) skew: Option<[Mat<f64>; 2]>,
     /// BᵀW: one row a basis vector, one column a direction of the interface.
     pub(super) interface: Mat<f64>,
 }
@@ -59,6 +61,7 @@ impl<'a> Basis<'a> {
             damping: Mat::zeros(0, 0),
             stiffness: Mat::zeros(0, 0),
             hysteretic: operator.damping.hysteretic.as_ref().map(|_| Mat::zeros(0, 0)),
+            skew: operator.skew.map(|_| [Mat::zeros(0, 0), Mat::zeros(0, 0)]),
             interface: Mat::zeros(0, operator.interface.directions.len()),
         };
         basis.project();
@@ -279,15 +282,19 @@ impl<'a> Basis<'a> {
         let (old, m, n_real) = (self.sizes.len(), self.len(), self.n_real());
         // Columns of the four projections, down to their diagonals: the rest follows from symmetry.
         let mut borders = [(); 4].map(|()| Mat::<f64>::zeros(m, m - old));
+        let mut skew = self.operator.skew.map(|_| [(); 2].map(|()| Mat::<f64>::zeros(m, m - old)));
         let mut images = Vec::new();
         for (start, width) in panels(old..m) {
-            let known = self.columns().range(0..start + width);
+            let known = || self.columns().range(0..start + width);
             let new = match start < n_real {
                 true => self.modes.subcols(start, width),
                 false => self.added.subcols(start - n_real, width),
             };
-            let forms = self.operator.forms(known, new, &mut images);
+            let forms = self.operator.forms(known(), new, &mut images);
             for (border, form) in borders.iter_mut().zip(forms) {
+                border.submatrix_mut(0, start - old, start + width, width).copy_from(form);
+            }
+            for (border, form) in skew.iter_mut().flatten().zip(self.operator.skew_between(known(), new)) {
                 border.submatrix_mut(0, start - old, start + width, width).copy_from(form);
             }
         }
@@ -297,6 +304,16 @@ impl<'a> Basis<'a> {
                 if j < old { small[(i, j)] } else { border[(i, j - old)] }
             })
         };
+        let grow_skew = |small: &Mat<f64>, border: &Mat<f64>| {
+            Mat::from_fn(m, m, |i, j| match (i.max(j) < old, i <= j) {
+                (true, _) => small[(i, j)],
+                (_, true) => border[(i, j - old)],
+                (_, false) => -border[(j, i - old)],
+            })
+        };
+        if let (Some(small), Some(border)) = (&mut self.skew, &skew) {
+            *small = [0, 1].map(|k| grow_skew(&small[k], &border[k]));
+        }
         let [mass, stiffness, damping, loss] = &borders;
         self.mass = grow(&self.mass, mass);
         self.stiffness = grow(&self.stiffness, stiffness);

@@ -339,6 +339,7 @@ fn project(frame: &FamilyFrame<'_>, basis: &Basis<'_>) -> Projection {
             .chain(variants.iter().map(|v| &v.1))
             .cloned()
             .collect(),
+        skew: basis.skew.clone(),
         interface: basis.interface.clone(),
     }
 }

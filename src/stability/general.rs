@@ -470,7 +470,7 @@ fn partners(right: &[c64], left: &[c64]) -> Vec<Option<usize>> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::super::tests::{damped, dense_modes, dense_spectrum, nearest, steady};
     use super::super::{certified_modes, complex_modes};
     use super::*;
@@ -480,7 +480,7 @@ mod tests {
 
     /// A random body with skew parts of full rank, gyroscopic (`spin`) and circulatory (`friction`), and damping of a kind; with
     /// contacts, where these are all that is not symmetric in K.
-    fn rotating(n: usize, seed: u64, spin: f64, friction: f64) -> System {
+    pub(crate) fn rotating(n: usize, seed: u64, spin: f64, friction: f64) -> System {
         let mut system = damped(random_system(n, 2, 20.0, seed), seed % 8);
         let mut random = Random::seeded(seed);
         let mut skew = |size: f64| {

@@ -5,7 +5,7 @@
 //! corrections then sharpen the right vectors.
 //! [`certified_modes`] also counts the unstable eigenvalues, without looking for them. [`confirm`] looks for the same
 //! pairs by two-level Arnoldi on the full order, which shares nothing with the projection. Where what is not symmetric has no
-//! low rank, the modes themselves come from there.
+//! low rank, and a mode is not accurate on the projection, the modes themselves come from there.
 
 mod advice;
 mod analysis;
@@ -16,6 +16,7 @@ mod budget;
 mod certificate;
 mod closed;
 mod compact;
+mod complex;
 mod damper;
 #[cfg(test)]
 mod doubles;
@@ -43,10 +44,10 @@ mod structural;
 mod tests;
 
 pub use advice::PointRates;
-pub use analysis::{complex_eigenvalues, complex_modes};
 pub use band::Band;
 pub use certificate::{Certificate, CloseCall, SLOWEST_GROWTH, certified_modes};
 pub use closed::ClosedContact;
+pub use complex::{complex_eigenvalues, complex_modes};
 pub use family::{Family, FamilyCheck, FamilyFrame, FamilyModes, SlidingState};
 pub use filter::{ModalFilter, modal_filter};
 pub use full_order::{Confirmation, confirm};

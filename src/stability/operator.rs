@@ -26,7 +26,7 @@ pub(super) struct Operator<'a> {
     /// Where the matrices are factorised.
     pub(super) engine: &'a Engine,
     pub(super) interface: Interface<'a>,
-    /// The sparse skew parts of K and C, for which no other method than that at full order is.
+    /// The sparse skew parts of K and C.
     pub(super) skew: Option<&'a Skew>,
     /// The damping of the structure and others that may take part, taken apart.
     pub(super) dampers: Arc<Vec<Damper<'a>>>,
@@ -228,6 +228,13 @@ impl<'a> Operator<'a> {
         let of = Between { b, y, mass: mass.as_ref(), stiffness: stiffness.as_ref() };
         let [damping, loss] = [own.viscous_form(&of), own.loss.form(&of)];
         [mass, stiffness, damping, loss]
+    }
+
+    /// BᵀXY of the sparse skew parts X of K and C; none where there are none.
+    pub(super) fn skew_between(&self, b: Columns<'_>, y: MatRef<'_, f64>) -> Vec<Mat<f64>> {
+        // A product with a matrix stored by columns is that with its transpose.
+        let between = |(matrix, _): SkewPart<'_>| -> Mat<f64> { -b.gram(times(matrix, y).as_ref()) };
+        self.skew_parts().map(between).collect()
     }
 
     /// yⱼ += sumⱼ xⱼ for the right side, and for the left with C_c and K_c transposed. Gives what the matrices are between

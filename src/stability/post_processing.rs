@@ -24,6 +24,7 @@ pub(super) fn post_processed(
     let one = vec![c64::new(1.0, 0.0); measured.lambda.len()];
     measured.correction.add_scaled(&one, &measured.right);
     let measured = &*measured;
+    let skew = [&measured.right, &measured.correction].map(|vectors| operator.skew_forms(vectors));
     let mode = |j: usize| {
         let corrected = measured.corrected[j] / measured.correction.norm(j);
         let found = measured.backward_error[j];
@@ -55,7 +56,7 @@ pub(super) fn post_processed(
                 eigenvalue,
                 &forms.scaled(to_unit_mass.powi(2)),
                 &motion,
-                [0.0; 2],
+                skew[usize::from(better)][j].map(|form| form * to_unit_mass.powi(2)),
             ),
             participation: shares(amplitudes, j),
         }

@@ -7,7 +7,7 @@ use crate::linalg::dense::{definite_pencil, product};
 use crate::linalg::unsymmetric::{complex_spectrum, eigenvalues, spectrum};
 use faer::{Mat, MatRef};
 
-/// (λ² + λ (Σ wᵢCᵢ + B c Bᵀ) + K + i Σ wᵢHᵢ + B k Bᵀ) y = 0 in M-orthonormal coordinates, m of them.
+/// (λ² + λ (Σ wᵢCᵢ + G + B c Bᵀ) + K + N + i Σ wᵢHᵢ + B k Bᵀ) y = 0 in M-orthonormal coordinates, m of them; G and N are skew.
 pub(super) struct FamilyMatrices {
     /// From these coordinates to those of the basis.
     pub(super) rotation: Mat<f64>,
@@ -16,6 +16,8 @@ pub(super) struct FamilyMatrices {
     frequencies: Vec<f64>,
     damping: Vec<Mat<f64>>,
     hysteretic: Vec<Option<Mat<f64>>>,
+    /// The sparse skew parts of K and C.
+    skew: Option<[Mat<f64>; 2]>,
     /// B = VᵀW.
     interface: Mat<f64>,
 }
@@ -26,6 +28,7 @@ pub(super) struct Projection {
     pub(super) stiffness: Mat<f64>,
     pub(super) damping: Vec<Mat<f64>>,
     pub(super) hysteretic: Vec<Option<Mat<f64>>>,
+    pub(super) skew: Option<[Mat<f64>; 2]>,
     pub(super) interface: Mat<f64>,
 }
 
@@ -38,6 +41,7 @@ impl Projection {
             stiffness: form(&self.stiffness),
             damping: self.damping.iter().map(form).collect(),
             hysteretic: self.hysteretic.iter().map(|h| h.as_ref().map(form)).collect(),
+            skew: self.skew.as_ref().map(|parts| parts.each_ref().map(form)),
             interface: product(basis.transpose(), self.interface.as_ref()),
         }
     }
@@ -72,6 +76,7 @@ impl FamilyMatrices {
             frequencies: squares.iter().map(|s| s.max(0.0).sqrt().max(floor)).collect(),
             damping: p.damping.iter().map(into).collect(),
             hysteretic: p.hysteretic.iter().map(|h| h.as_ref().map(into)).collect(),
+            skew: p.skew.as_ref().map(|parts| parts.each_ref().map(into)),
             interface: product(rotation.transpose(), p.interface.as_ref()),
             rotation,
         })
@@ -150,6 +155,10 @@ impl FamilyMatrices {
         let mut c = self.between(terms, |t| t.damping);
         let mut k = self.between(terms, |t| t.stiffness);
         k += &self.stiffness;
+        if let Some([circulatory, gyroscopic]) = &self.skew {
+            k += circulatory;
+            c += gyroscopic;
+        }
         self.damping.iter().zip(weights).for_each(|(part, w)| c += faer::Scale(*w) * part);
         (c, k)
     }

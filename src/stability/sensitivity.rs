@@ -288,10 +288,6 @@ fn sharpen(
     lambda: &[c64],
     sides: [(Side, &mut Block); 2],
 ) -> Result<()> {
-    // Vectors of sparse skew parts have their accuracy from the full order already.
-    if operator.skew.is_some() {
-        return Ok(());
-    }
     let mut factors = Vec::new();
     for l in lambda {
         factors.push(shifted_factor(operator, real, [l.norm(); 2])?.0);

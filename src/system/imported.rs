@@ -139,12 +139,6 @@ pub fn split(
             }
         }
     }
-    if let Some(skew) = coupling.as_ref().and_then(|c| c.skew.as_ref()) {
-        warnings.push(format!(
-            "The matrices have a part that is not symmetric in {} of {n} rows, which is not of low rank: the complex modes are found by two-level Arnoldi with sparse unsymmetric factors, at several frequencies of the band",
-            skew.rows()
-        ));
-    }
     let [mass, stiffness] = on_one_pattern(Halves::of(&exact_mass).symmetric, halves.symmetric);
     let structure = Structure {
         mass: mass.into(),

@@ -97,14 +97,6 @@ impl Skew {
         };
         Skew { stiffness: whole(stiffness).into(), damping: whole(damping).into() }
     }
-
-    /// How many rows have an entry.
-    pub(super) fn rows(&self) -> usize {
-        let [k, c] = [&self.stiffness, &self.damping];
-        (0..k.ncols())
-            .filter(|j| !k.row_idx_of_col_raw(*j).is_empty() || !c.row_idx_of_col_raw(*j).is_empty())
-            .count()
-    }
 }
 
 /// The rows that the skew parts connect, group by group, in the order of their first row; none where a group has more than

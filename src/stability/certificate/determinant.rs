@@ -31,6 +31,21 @@ const POINTS: f64 = 1000.0;
 /// Seen from two shifts, an eigenvalue differs by less than this part of |λ|.
 const SAME: f64 = 1e-9;
 
+/// Analyses the pattern of Q, where that is not known, by its factors off the middle of the band.
+/// Fails where these do not exist.
+pub(super) fn analyse_pattern(
+    operator: &Operator<'_>,
+    general: &mut General,
+    band_hz: [f64; 2],
+) -> Result<()> {
+    if general.symbolic.is_none() {
+        let [low, high] = band_hz.map(|f| TAU * f);
+        let shift = c64::new(1e-3 * high, 0.5 * (low + high));
+        general.symbolic = Shifted::new(operator, shift)?.symbolic();
+    }
+    Ok(())
+}
+
 /// Floating-point operations that the count is expected to take; infinity where no factorisation was made.
 pub(super) fn work(general: &General) -> f64 {
     general.symbolic.as_ref().map_or(f64::INFINITY, |symbolic| POINTS * 8.0 * symbolic.multiplications())

@@ -42,9 +42,9 @@ mod tests;
 
 use super::ComplexModes;
 use super::Structural;
-use super::analysis::{CompletedAnalysis, analyse, check};
+use super::analysis::{CompletedAnalysis, analyse};
 use super::band::Band;
-use super::general::general_modes;
+use super::complex::modes_with_skew_parts;
 use super::operator::Operator;
 use crate::equilibrium::SteadySliding;
 use crate::error::{Error, Result};
@@ -140,9 +140,7 @@ fn counted_at_full_order(
     most_work: f64,
     observer: &dyn Observer,
 ) -> Result<(ComplexModes, Option<Certificate>)> {
-    check(system, steady, known.real, band.hz)?;
-    let operator = Operator::new(system, steady)?;
-    let mut general = general_modes(&operator, known.real, band, observer)?;
+    let mut general = modes_with_skew_parts((system, steady), known, band, observer)?;
     if band.nearest.is_some() {
         general.modes.warnings.push(
             "The unstable modes were not counted: those nearest to a frequency are requested, not all of a band"
@@ -150,11 +148,13 @@ fn counted_at_full_order(
         );
         return Ok((general.modes, None));
     }
+    let operator = Operator::new(system, steady)?;
     let matrices = Definiteness { operator: &operator, factor: None };
     if let Some(broken) = matrices.broken_premise() {
         not_countable(&mut general.modes, broken);
         return Ok((general.modes, None));
     }
+    determinant::analyse_pattern(&operator, &mut general, band.hz)?;
     let work = determinant::work(&general);
     if work > most_work {
         determinant::not_counted(&mut general.modes, work);

@@ -154,9 +154,8 @@ fn a_skew_part_of_high_rank_stays_sparse() {
     let ones: Vec<_> = (0..n).map(|i| entry(i, i, 1.0)).collect();
     let m = real(SparseMatrix::try_new_from_triplets(n, n, &ones).unwrap());
     let imported = split(given(&m), Some(given(&k)), given(&k), &[]).unwrap();
-    assert!(imported.warnings[0].contains("5000 of 5000 rows"), "{:?}", imported.warnings);
     let coupling = imported.coupling.unwrap();
-    assert!(coupling.directions.is_empty());
+    assert!(coupling.directions.is_empty() && coupling.skew.is_some());
     let [rest, rest_c] = coupling.assembled(n).unwrap();
     for (symmetric, rest) in
         [(imported.structure.stiffness, rest), (imported.structure.damping.viscous.unwrap(), rest_c)]
