@@ -6,8 +6,9 @@ use crate::error::{Error, Fault};
 const ABSENT: [(&[&str], &str); 11] = [
     (&["volume", "brick", "tet", "hex"], "A solid is a [solid.NAME], named as its region of the mesh"),
     (
-        &["tie", "ties", "mpc", "coupling", "constraint", "equation"],
-        "Ties are not modelled: let the parts share their nodes, or join them by [rigid], or by a [spring] with `to`",
+        &["mpc", "coupling", "constraint", "equation", "rbe2", "rbe3", "bond", "bonded", "glue"],
+        "Surfaces are joined by [tie.NAME] with `on` and `to`, regions to a point by [rigid.NAME], or by [averaging.NAME] without making \
+         them stiffer",
     ),
     (
         &["rotation_speed", "rotational_speed", "angular_velocity", "omega", "rpm", "rotation", "spin"],

@@ -182,6 +182,8 @@ fn check_matrices(root: &mut Report, case: &Case) {
         ("mass", !case.mass.is_empty()),
         ("spring", !case.spring.is_empty()),
         ("rigid", !case.rigid.is_empty()),
+        ("averaging", !case.averaging.is_empty()),
+        ("tie", !case.tie.is_empty()),
         ("support", !case.support.is_empty()),
         ("force", !case.force.is_empty()),
     ];

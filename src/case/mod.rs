@@ -39,7 +39,9 @@ pub use frf::{FrfAnalysis, FrfContact, FrfQuantity, FrfSolution, MotionAt, Unive
 pub use matrices::{Factor, Matrices, MatrixTerm};
 pub use measured::{MeasuredData, Transform};
 pub use mesh::{AnnulusMesh, LengthUnit, MeshSource, PlateMesh, RigMesh};
-pub use model::{Bar, Force, Held, Mass, Profile, Rigid, Shell, Solid, SpringSet, StructureDamping};
+pub use model::{
+    Averaging, Axis, Bar, Force, Held, Mass, Profile, Rigid, Shell, Solid, SpringSet, StructureDamping, Tie,
+};
 pub(crate) use parameter::path_matches;
 pub use sound::{AirChoice, Microphone, ON_AXIS, SoundAnalysis};
 pub use test_file::read_test;
@@ -95,6 +97,10 @@ declare! {
         pub spring: BTreeMap<String, SpringSet> = key::named(),
         /// Rigid bodies by name.
         pub rigid: BTreeMap<String, Rigid> = key::named(),
+        /// Points that move as regions do in the mean, by name.
+        pub averaging: BTreeMap<String, Averaging> = key::named(),
+        /// Surfaces that are joined although their meshes do not match, by name.
+        pub tie: BTreeMap<String, Tie> = key::named(),
         /// Supports by name.
         pub support: BTreeMap<String, Held> = key::named(),
         /// External forces by name.

@@ -1,4 +1,4 @@
-//! `[shell]`, `[bar]`, `[solid]`, `[mass]`, `[spring]`, `[rigid]`, `[support]`, `[force]`, `[damping]`: the structure.
+//! `[shell]`, `[bar]`, `[solid]`, `[mass]`, `[spring]`, `[rigid]`, `[averaging]`, `[tie]`, `[support]`, `[force]`, `[damping]`: the structure.
 
 use crate::schema::units::*;
 use crate::schema::{Derivative, Invalidates, Report, declare, key, variants};
@@ -127,28 +127,98 @@ declare! {
     }
 }
 
+declare! {
+    /// A point that moves as regions do in the mean: what is on it is spread over them, which it does not make stiffer.
+    pub struct Averaging {
+        /// A region of one point, which follows: with loads, masses, springs or sensors on it.
+        pub point: String = key::name("a region of one point"),
+        /// The regions whose mean motion it has, by least squares; nodes count by their share of areas or lengths.
+        pub of: Vec<String> = key::names("regions whose mean motion the point has").not_empty(),
+    }
+}
+
+declare! {
+    /// Two surfaces that are joined although their meshes do not match.
+    pub struct Tie {
+        /// The surface that follows (slave): faces of a solid or a shell, or lines on the edge of a shell; best the one of the finer mesh.
+        pub on: String = key::name("a region of faces, or of lines on the edge of a shell"),
+        /// The surface that leads (master): a shell, or a region of faces of a shell or a solid.
+        pub to: String = key::name("a shell, or a region of faces"),
+        /// The largest gap that is joined \[m\]; gaps are kept, and nodes farther away are not joined. When not said: a tenth of the
+        /// mean size of the faces of `to`.
+        pub within: Option<f64> = key::quantity(LENGTH)
+            .positive()
+            .derivative(|_| Derivative::None("it only decides which nodes are joined"))
+            .optional(),
+    }
+}
+
 /// The names of the six degrees of freedom of a node, in order.
 pub(crate) const DOF_NAMES: [&str; 6] = ["ux", "uy", "uz", "rx", "ry", "rz"];
+/// The names of displacements about an axis: away from it, around it, along it.
+pub(crate) const ABOUT_AXIS: [&str; 3] = ["radial", "tangential", "axial"];
+
+declare! {
+    /// The axis of cylindrical directions.
+    pub struct Axis {
+        /// A point on it \[m\].
+        pub through: [f64; 3] = key::quantities(LENGTH).or([0.0; 3]),
+        /// Its direction.
+        pub along: [f64; 3] = key::direction().or([0.0, 0.0, 1.0]),
+    }
+}
 
 declare! {
     /// Held degrees of freedom of regions.
-    pub struct Held {
+    pub struct Held, checked by check_held {
         /// The regions.
         pub on: Vec<String> = key::names("a region, or a list of them").not_empty(),
-        /// Names of held degrees of freedom among ux, uy, uz, rx, ry, rz, or `all`. Along an edge with no displacement the rotation about the
+        /// Names of held degrees of freedom among ux, uy, uz, rx, ry, rz, with an `axis` among radial, tangential, axial, or `all`. Along an edge with no displacement the rotation about the
         /// normal of a membrane stays free: it is half the shear strain there.
-        pub held: Vec<String> = key::names("\"all\", or some of ux, uy, uz, rx, ry, rz")
-            .check("\"all\", or some of ux, uy, uz, rx, ry, rz", |list| {
-                list.iter().all(|name| name == "all" || DOF_NAMES.contains(&name.as_str()))
+        pub held: Vec<String> = key::names("\"all\", or some of ux, uy, uz, rx, ry, rz; with an `axis` of radial, tangential, axial")
+            .check("\"all\", or some of ux, uy, uz, rx, ry, rz; with an `axis` of radial, tangential, axial", |list| {
+                let known = |name: &str| DOF_NAMES.contains(&name) || ABOUT_AXIS.contains(&name);
+                list.iter().all(|name| name == "all" || known(name))
             })
             .or(vec!["all".into()]),
+        /// An axis about which displacements are held: radial, tangential, axial.
+        pub axis: Option<Axis> = key::table().optional(),
+    }
+}
+
+/// Names of the one kind or the other.
+fn check_held(support: &Held, report: &mut Report) {
+    let (names, help): (&[&str], _) = match support.axis {
+        Some(_) => {
+            (&ABOUT_AXIS, "Give rotations, and displacements along x, y, z, in a support of their own")
+        }
+        None => (&DOF_NAMES, "Give the axis, as `axis = { through = [0, 0, 0], along = [0, 0, 1] }`"),
+    };
+    let other = support.held.iter().find(|name| *name != "all" && !names.contains(&name.as_str()));
+    if let Some(name) = other {
+        let with = if support.axis.is_some() { "with" } else { "without" };
+        let expected = format!("\"all\", or some of {}", names.join(", "));
+        report.fault("held", format!("\"{name}\" {with} an `axis`"), expected, help);
     }
 }
 
 impl Held {
     /// Whether each of the six degrees of freedom is held.
     pub fn holds(&self) -> [bool; 6] {
-        DOF_NAMES.map(|dof| self.held.iter().any(|name| name == dof || name == "all"))
+        let along = ABOUT_AXIS.map(|name| self.names(name));
+        let all = along == [true; 3];
+        let mut number = 0..6;
+        DOF_NAMES.map(|dof| self.names(dof) || number.next().is_some_and(|k| k < 3 && all))
+    }
+
+    /// Whether displacements away from the axis, around it and along it are held; none where all are ([`Held::holds`]).
+    pub fn holds_about_axis(&self) -> [bool; 3] {
+        let along = ABOUT_AXIS.map(|name| self.names(name));
+        if along == [true; 3] { [false; 3] } else { along }
+    }
+
+    fn names(&self, dof: &str) -> bool {
+        self.held.iter().any(|name| name == dof || name == "all")
     }
 }
 

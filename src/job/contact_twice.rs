@@ -54,7 +54,8 @@ pub(super) fn surfaces_twice(
     let surfaces: Vec<(&ContactPair, &str, &str)> = pairs
         .iter()
         .filter_map(|pair| {
-            let counter = counter_faces(case.contact.get(&pair.name)?, regions, model, "").ok()?.part;
+            let counter =
+                counter_faces(&case.contact.get(&pair.name)?.counter, regions, model, ("", "")).ok()?.part;
             Some((pair, body(&pair.name)?.name.as_str(), counter.name.as_str()))
         })
         .collect();

@@ -170,7 +170,8 @@ pub fn surface_points(
             "lines or faces on one of the case's shells, or faces on one of its solids",
         ))
     })?;
-    let CounterFaces { part: counter, faces } = counter_faces(contact, regions, model, &place("counter"))?;
+    let CounterFaces { part: counter, faces } =
+        counter_faces(&contact.counter, regions, model, (&place("counter"), ", or \"ground\""))?;
     let own: BTreeSet<usize> = nodes.iter().copied().collect();
     let shared = faces.iter().flat_map(Cell::nodes).filter(|node| own.contains(node));
     let shared: BTreeSet<usize> = shared.copied().collect();
@@ -230,7 +231,7 @@ pub fn surface_points(
 /// Two unit vectors of a pair, for pictures: where the load presses the body, and where the counter-body moves.
 pub fn arrows(contact: &Contact, regions: &Regions, model: &Model, points: &[ContactPoint]) -> [[f64; 3]; 2] {
     let sliding = Vector3::from(contact.sliding_direction) * contact.sliding_velocity;
-    let press = match (contact.into, counter_faces(contact, regions, model, "").ok()) {
+    let press = match (contact.into, counter_faces(&contact.counter, regions, model, ("", "")).ok()) {
         (Some(into), _) => Vector3::from(into),
         (None, Some(CounterFaces { faces, .. })) => faces.first().map_or(Vector3::zeros(), |face| {
             let at = |k: usize| Vector3::from(model.nodes[face.nodes()[k]]);

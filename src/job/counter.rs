@@ -1,7 +1,6 @@
-//! The faces that the counter-body of a contact offers.
+//! The faces that the counter-body of a contact offers, or the master of a tie.
 
 use super::regions::Regions;
-use crate::case::Contact;
 use crate::error::{Error, Fault, Result};
 use crate::mesh::{Cell, made_of};
 use crate::structure::{Model, Part};
@@ -14,27 +13,24 @@ pub struct CounterFaces<'a> {
     pub faces: Vec<Cell>,
 }
 
-/// The faces that the counter-body of a contact offers: a shell by its name, or a region of faces on a solid or a shell.
+/// The faces that the counter-body `name` of a contact offers: a shell, or a region of faces on a solid or a shell. `beside` is what else
+/// may stand at `place`.
 ///
 /// # Errors
-/// A name that is neither, at `place`.
+/// A name that is neither.
 pub fn counter_faces<'a>(
-    contact: &Contact,
+    name: &str,
     regions: &Regions,
     model: &'a Model,
-    place: &str,
+    (place, beside): (&str, &str),
 ) -> Result<CounterFaces<'a>> {
-    let name = contact.counter.as_str();
     if let Some(part) = model.part(name).filter(|part| part.as_shell().is_some()) {
         return Ok(CounterFaces { part, faces: part.cells.clone() });
     }
     let known: Vec<&str> = model.shells().map(|(part, _)| part.name.as_str()).collect();
     let expected = match known.len() {
-        0 => "a region of faces on a solid, or \"ground\"".to_string(),
-        _ => format!(
-            "one of the case's shells ({}), a region of faces on a solid, or \"ground\"",
-            known.join(", ")
-        ),
+        0 => format!("a region of faces on a solid{beside}"),
+        _ => format!("one of the case's shells ({}), a region of faces on a solid{beside}", known.join(", ")),
     };
     let fault = |found: String, help: &str| Error::input(Fault::new(place, found, expected).with_help(help));
     if regions.mesh.region(name).is_none() {

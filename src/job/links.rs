@@ -1,15 +1,23 @@
-//! The rigid bodies and supports of a case, checked in the words of the case.
+//! The rigid bodies and supports of a case, and its constraints checked in the words of the case.
 
 use super::regions::Regions;
-use crate::case::Case;
-use crate::error::{Error, Fault, Faults};
-use crate::structure::{Model, RigidLink, Support, TieWords, check_ties};
+use crate::case::{Axis, Case};
+use crate::error::{Error, Fault, Faults, Result};
+use crate::structure::{
+    ConstraintWords, InclinedSupport, Model, Part, PartKind, RigidLink, Support, check_constraints,
+};
+use nalgebra::Vector3;
 
-/// Adds the rigid links and the supports of the case to `model`. A master among its followers moves with itself anyway and is left out
-/// there.
+/// Nodes nearer to an axis than this share of their distance from a point of it are on it.
+const ON_AXIS: f64 = 1e-9;
+/// Components of unit directions below this are round-off.
+const ROUND_OFF: f64 = 1e-14;
+
+/// Adds the rigid links and the supports of the case to `model`, which has its other constraints. A master among its followers moves with itself
+/// anyway and is left out there.
 ///
-/// Faults: regions that are missing, a master whose only follower is itself, those of [`check_ties`].
-pub fn add_ties(case: &Case, regions: &Regions, model: &mut Model, faults: &mut Faults) {
+/// Faults: regions that are missing, a master whose only follower is itself, nodes on the axis of a support, those of [`check_constraints`].
+pub fn add_links(case: &Case, regions: &Regions, model: &mut Model, faults: &mut Faults) {
     let mut names = Vec::new();
     for (name, rigid) in &case.rigid {
         let followers = format!("`rigid.{name}.follow`");
@@ -31,16 +39,98 @@ pub fn add_ties(case: &Case, regions: &Regions, model: &mut Model, faults: &mut 
     let places: Vec<String> = case.support.keys().map(|name| format!("`support.{name}.on`")).collect();
     for (support, place) in case.support.values().zip(&places) {
         let nodes = regions.nodes_of(&support.on, place, faults);
+        if let (Some(axis), held) = (&support.axis, support.holds_about_axis()) {
+            let inclined = about_axis(axis, held, &nodes, (regions, model), place);
+            model.inclined_supports.extend(faults.take(inclined).unwrap_or_default());
+        }
         model.supports.push(Support { nodes, held: support.holds() });
     }
-    let words = TieWords {
+    let words = ConstraintWords {
         link: &|k| format!("`rigid.{}`", names[k]),
         followers: &|k| format!("`rigid.{}.follow`", names[k]),
         support: &|k| places[k].clone(),
         node: &|node| regions.name_of_node(node),
         nodes: &|nodes| regions.count_of_nodes(nodes),
     };
-    check_ties(model, &words, faults);
+    check_constraints(model, &words, faults);
+}
+
+/// What holds nodes along directions about an axis: e_r away from it, e_t = a × e_r, a along it.
+fn about_axis(
+    axis: &Axis,
+    held: [bool; 3],
+    nodes: &[usize],
+    (regions, model): (&Regions, &Model),
+    place: &str,
+) -> Result<Vec<InclinedSupport>> {
+    let along = Vector3::from(axis.along).normalize();
+    let (mut all, mut on_axis) = (Vec::with_capacity(nodes.len()), Vec::new());
+    for node in nodes.iter().filter(|_| held.contains(&true)) {
+        let from = Vector3::from(model.nodes[*node]) - Vector3::from(axis.through);
+        let across = from - from.dot(&along) * along;
+        let Some(radial) = across.try_normalize(ON_AXIS * from.norm()) else {
+            if held[0] || held[1] {
+                on_axis.push(*node);
+            }
+            continue;
+        };
+        let directions = [radial, along.cross(&radial), along];
+        let held = directions.iter().zip(held).filter(|(_, held)| *held);
+        let six = |d: &Vector3<f64>| {
+            [d[0], d[1], d[2], 0.0, 0.0, 0.0].map(|c| if c.abs() < ROUND_OFF { 0.0 } else { c })
+        };
+        all.push(InclinedSupport {
+            node: *node,
+            held: held.map(|(d, _)| six(d)).collect(),
+            name: place.to_string(),
+        });
+    }
+    if on_axis.is_empty() {
+        return Ok(all);
+    }
+    let found = format!("{} on the `axis`, where no direction is radial", regions.count_of_nodes(&on_axis));
+    let fault = Fault::new(place, found, "nodes off the axis");
+    Err(Error::input(fault.with_help("Leave them out of the region, or move the axis by `through`")))
+}
+
+/// Refuses what acts on rotations of nodes that have none: solids take displacements alone.
+pub fn check_turning(case: &Case, regions: &Regions, model: &Model, faults: &mut Faults) {
+    let mut turns = vec![true; model.nodes.len()];
+    let nodes = |part: &Part| part.nodes();
+    let (solid, other): (Vec<&Part>, Vec<&Part>) =
+        model.parts.iter().partition(|part| matches!(part.kind, PartKind::Solid(_)));
+    solid.into_iter().flat_map(nodes).for_each(|node| turns[node] = false);
+    other.into_iter().flat_map(nodes).for_each(|node| turns[node] = true);
+    for link in &model.links {
+        std::iter::once(&link.master).chain(&link.slaves).for_each(|node| turns[*node] = true);
+    }
+    let slaves = model.couplings.iter().flat_map(|coupling| &coupling.constraints).map(|c| c.slave);
+    slaves.filter(|(_, component)| *component > 2).for_each(|(node, _)| turns[node] = true);
+    let mut check = |place: String, what: &str, on: &[String]| {
+        // Regions that are missing are told elsewhere.
+        let nodes = regions.nodes_of(on, "", &mut Faults::new());
+        let still: Vec<usize> = nodes.into_iter().filter(|node| !turns[*node]).collect();
+        if !still.is_empty() {
+            let found = format!("{what} on {} of solids", regions.count_of_nodes(&still));
+            let fault = Fault::new(place, found, "nodes with rotations: solids have displacements alone");
+            faults.push(fault.with_help(
+                "Make a [point], join it to a face of the solid by [averaging], or by [rigid], which makes it stiff, and name the point here; \
+                 a face whose displacements are held does not turn",
+            ));
+        }
+    };
+    for (name, support) in &case.support {
+        if let Some(rotation) = support.held.iter().find(|held| ["rx", "ry", "rz"].contains(&held.as_str())) {
+            check(format!("`support.{name}.held`"), &format!("\"{rotation}\""), &support.on);
+        }
+    }
+    for (name, spring) in case.spring.iter().filter(|(_, spring)| spring.rotational) {
+        let ends: Vec<String> = std::iter::once(&spring.on).chain(&spring.to).cloned().collect();
+        check(format!("`spring.{name}.rotational`"), "true", &ends);
+    }
+    for (name, mass) in case.mass.iter().filter(|(_, mass)| mass.inertia != [0.0; 3]) {
+        check(format!("`mass.{name}.inertia`"), "moments of inertia", std::slice::from_ref(&mass.on));
+    }
 }
 
 /// An error of the structure in terms of the case: the keys of all that holds something, `clamp` among them, replace its supports.

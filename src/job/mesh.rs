@@ -20,7 +20,8 @@ pub(super) fn read_mesh(case: &Case, source: &MeshSource) -> Result<(Mesh, Vec<S
         }
     };
     let mesh = mesh.map_err(|error| by_keys(error, source))?;
-    let pairs = case.contact.values().map(|contact| [contact.body.as_str(), contact.counter.as_str()]);
+    let contacts = case.contact.values().map(|contact| [contact.body.as_str(), contact.counter.as_str()]);
+    let pairs = contacts.chain(case.tie.values().map(|tie| [tie.on.as_str(), tie.to.as_str()]));
     let diagnosis = mesh::diagnose_apart(&mesh, &pairs.collect::<Vec<_>>());
     let key = match source {
         MeshSource::File { .. } => "file",

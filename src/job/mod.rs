@@ -18,6 +18,7 @@ mod complex;
 mod contact_twice;
 mod contacts;
 mod counter;
+mod couplings;
 mod discs;
 mod explore;
 mod export;

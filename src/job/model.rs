@@ -1,17 +1,18 @@
 //! Case and mesh → the plain description of the structure, for the whole or for some of its parts.
 
-use super::links::add_ties;
+use super::couplings::add_couplings;
+use super::links::{add_links, check_turning};
 use super::regions::Regions;
 use crate::case::{Case, ModesAnalysis};
 use crate::error::{Fault, Faults, Result};
 use crate::mesh::Cell;
 use crate::structure::{Bar, Model, Part, PointMass, Shell, Solid, Spring, Support};
 
-/// The structure of the whole case.
+/// The structure of the whole case; `warnings` take what the user should know of it.
 ///
 /// # Errors
-/// Every region that is missing or of the wrong kind.
-pub fn whole_model(case: &Case, regions: &Regions) -> Result<Model> {
+/// Every region that is missing or of the wrong kind, constraints that contradict each other.
+pub fn whole_model(case: &Case, regions: &Regions, warnings: &mut Vec<String>) -> Result<Model> {
     let mut faults = Faults::new();
     let mut model = Model { nodes: regions.mesh.nodes.clone(), ..Model::default() };
     for (name, shell) in &case.shell {
@@ -62,7 +63,9 @@ pub fn whole_model(case: &Case, regions: &Regions) -> Result<Model> {
             });
         }
     }
-    add_ties(case, regions, &mut model, &mut faults);
+    add_couplings(case, regions, &mut model, warnings, &mut faults);
+    add_links(case, regions, &mut model, &mut faults);
+    check_turning(case, regions, &model, &mut faults);
     faults.into_result(model)
 }
 
@@ -88,7 +91,9 @@ pub fn part_model(
     if !analysis.free {
         model.springs = whole.springs.clone();
         model.links = whole.links.clone();
+        model.couplings = whole.couplings.clone();
         model.supports = whole.supports.clone();
+        model.inclined_supports = whole.inclined_supports.clone();
     }
     let clamp = regions.nodes_of(&analysis.clamp, &format!("`modes.{name}.clamp`"), &mut faults);
     let mut used = vec![!case.point.is_empty() && analysis.parts.is_empty(); model.nodes.len()];
@@ -100,6 +105,13 @@ pub fn part_model(
     for link in &mut model.links {
         link.slaves.retain(|slave| used[*slave]);
     }
+    for coupling in &mut model.couplings {
+        coupling.constraints.retain(|constraint| {
+            let slave = constraint.slave.0;
+            used[slave] && !clamp.contains(&slave) && constraint.terms.iter().all(|(node, ..)| used[*node])
+        });
+    }
+    model.inclined_supports.retain(|support| used[support.node] && !clamp.contains(&support.node));
     for support in &mut model.supports {
         support.nodes.retain(|node| used[*node] && !clamp.contains(node));
     }

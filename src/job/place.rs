@@ -50,13 +50,15 @@ pub fn place(
     })
 }
 
-/// For every node, the lowest node it is connected to through elements and rigid bodies.
+/// For every node, the lowest node it is connected to through elements, rigid bodies, averaging links and ties.
 fn connected(regions: &Regions, case: &Case) -> Vec<usize> {
-    let body = |rigid: &crate::case::Rigid| -> Vec<usize> {
-        let names = rigid.follow.iter().chain([&rigid.master]);
-        names.filter_map(|name| regions.nodes(name, "").ok()).flatten().collect()
+    let nodes = |names: Vec<&String>| -> Vec<usize> {
+        names.into_iter().filter_map(|name| regions.nodes(name, "").ok()).flatten().collect()
     };
-    let bodies: Vec<Vec<usize>> = case.rigid.values().map(body).collect();
+    let bodies = case.rigid.values().map(|rigid| rigid.follow.iter().chain([&rigid.master]).collect());
+    let means = case.averaging.values().map(|link| link.of.iter().chain([&link.point]).collect());
+    let ties = case.tie.values().map(|tie| vec![&tie.on, &tie.to]);
+    let joined: Vec<Vec<usize>> = bodies.chain(means).chain(ties).map(nodes).collect();
     let elements = regions.mesh.elements.iter().map(|element| element.nodes());
-    lowest_connected(regions.mesh.nodes.len(), elements.chain(bodies.iter().map(Vec::as_slice)))
+    lowest_connected(regions.mesh.nodes.len(), elements.chain(joined.iter().map(Vec::as_slice)))
 }

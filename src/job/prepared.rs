@@ -46,7 +46,7 @@ impl<'a> Prepared<'a> {
     }
 
     fn build(case: &'a Case) -> Result<Self> {
-        let (mesh, warnings) = match &case.mesh {
+        let (mesh, mut warnings) = match &case.mesh {
             Some(source) => read_mesh(case, source)?,
             None => (Mesh::default(), Vec::new()),
         };
@@ -61,7 +61,7 @@ impl<'a> Prepared<'a> {
                 faults.take(place(&mut regions, case, name, contact, placement));
             }
         }
-        let model = faults.take(whole_model(case, &regions));
+        let model = faults.take(whole_model(case, &regions, &mut warnings));
         let model = faults.into_result(model)?.unwrap_or_default();
         let assembled = Arc::new(assemble(&model).map_err(|error| in_terms_of_the_case(error, case, None))?);
         let pairs = contact_pairs(case, &regions, &model, &assembled.dofs)?;

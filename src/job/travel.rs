@@ -55,8 +55,12 @@ fn track(
         let stand = Stand { travel, touch: Some(touch) };
         surface_points(name, contact, model, &stand).ok().filter(|there| there.len() == points.len())
     };
-    let counter =
-        counter_faces(contact, &prepared.regions, &prepared.model, &format!("`contact.{name}.counter`"))?;
+    let counter = counter_faces(
+        &contact.counter,
+        &prepared.regions,
+        &prepared.model,
+        (&format!("`contact.{name}.counter`"), ""),
+    )?;
     let edge = mean_edge(&prepared.model.nodes, &counter.faces);
     let Stations { first, spacing, points } = Stations::new([low, high], edge, at).ok_or_else(|| {
         let found = format!("a way from {low:.4} m to {high:.4} m, which leaves `{}`", contact.counter);

@@ -243,6 +243,7 @@ mod tests {
                 nodes: (0..=n).collect(),
                 held: [true, true, true, false, true, false],
             }],
+            ..Model::default()
         }
     }
 

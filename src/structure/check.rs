@@ -3,7 +3,7 @@
 use super::dofs::DofMap;
 use super::elements::{FlatTriangle, split_face, spring_direction};
 use super::material::Material;
-use super::model::{Bar, Model, Part, PartKind, PlateTheory, Shell};
+use super::model::{Bar, Coupling, Model, Part, PartKind, PlateTheory, Shell};
 use super::registry::elements;
 use crate::error::{Fault, Faults, Result};
 use crate::mesh::{Cell, made_of};
@@ -27,7 +27,7 @@ pub(super) fn check_model(model: &Model) -> Result<()> {
     shared_elements(model, &mut faults);
     check_masses(model, &mut faults);
     check_springs(model, &mut faults);
-    check_ties(model, &mut faults);
+    check_references(model, &mut faults);
     faults.into_result(())
 }
 
@@ -123,8 +123,8 @@ fn check_springs(model: &Model, faults: &mut Faults) {
     }
 }
 
-/// Rigid links and supports.
-fn check_ties(model: &Model, faults: &mut Faults) {
+/// Rigid links, other constraints and supports.
+fn check_references(model: &Model, faults: &mut Faults) {
     let known = |node: &usize| *node < model.nodes.len();
     for (k, link) in model.links.iter().enumerate() {
         let ends = std::iter::once(&link.master).chain(&link.slaves);
@@ -134,6 +134,23 @@ fn check_ties(model: &Model, faults: &mut Faults) {
     for (k, support) in model.supports.iter().enumerate() {
         let place = format!("support {}", k + 1);
         missing_nodes(&place, support.nodes.iter().filter(|n| !known(n)), model.nodes.len(), faults);
+    }
+    for support in &model.inclined_supports {
+        let missing = std::iter::once(&support.node).filter(|n| !known(n));
+        missing_nodes(&support.name, missing, model.nodes.len(), faults);
+    }
+    for Coupling { name, constraints } in &model.couplings {
+        let terms = || constraints.iter().flat_map(|constraint| &constraint.terms);
+        let nodes = constraints.iter().map(|c| &c.slave.0).chain(terms().map(|(node, ..)| node));
+        missing_nodes(name, nodes.filter(|n| !known(n)), model.nodes.len(), faults);
+        let components =
+            constraints.iter().map(|c| c.slave.1).chain(terms().map(|(_, component, _)| *component));
+        if let Some(component) = components.into_iter().find(|component| *component > 5) {
+            faults.push(Fault::new(name, format!("component {component} of a node"), "0 to 5, for ux to rz"));
+        }
+        if let Some((_, _, c)) = terms().find(|(.., c)| !c.is_finite()) {
+            faults.push(Fault::new(name, format!("a coefficient {c}"), "finite coefficients"));
+        }
     }
 }
 

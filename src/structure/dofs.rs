@@ -7,20 +7,21 @@
 //!   dropped, so a node used only by a bending-only plate has three degrees of freedom, however the plate is
 //!   turned in space. A node that a bending-only plate shares with a bar, a full shell or a spring also keeps
 //!   what those act on; the bending-only plate neither stiffens nor loads it in the plate's own plane.
-//! * A support takes away its directions, exactly, also when the node's own directions are inclined to it.
-//! * A rigid slave at x_s follows its master at x_m: u_s = u_m + θ_m × (x_s − x_m), θ_s = θ_m. Links may be chained;
-//!   the last master leads. What acts on the slaves acts on their master. Supports belong on the master: one on a
-//!   slave would hold a combination of the master's motions and is refused.
+//! * A support takes away its directions, exactly, also when they or the node's own directions are inclined.
+//! * A slave is a sum of other degrees of freedom, u_s = Σ c u, by a [`Constraint`](super::Constraint) or a rigid link: a slave at x_s
+//!   follows its master at x_m, u_s = u_m + θ_m × (x_s − x_m), θ_s = θ_m. Masters may be slaves themselves; those that are none lead.
+//!   What acts on slaves acts on their masters. Supports belong on the masters: one on a slave would hold a sum of
+//!   motions of the masters and is refused.
 //! * The rotation about the normal of a membrane stays free on a clamped edge and on one that follows a master, see `drilling`.
 //!
 //! The free degrees of freedom of a node are orthonormal directions, along the global axes wherever possible.
 
-use super::constraints::{active_spaces, lead};
+use super::constraints::{Sums, check_unnamed, rigid_rows};
 use super::drilling::Drilling;
 use super::model::Model;
 use super::numbering::node_order;
 use super::registry::AnyElement;
-use super::ties::resolve_links;
+use super::spaces::{active_spaces, lead};
 use crate::error::{Error, Fault, Faults, Result};
 use crate::linalg::{SparseVector, c64};
 use nalgebra::{SMatrix, SVector, Vector3};
@@ -28,8 +29,10 @@ use std::collections::BTreeMap;
 
 const NAMES: [&str; 6] = ["ux", "uy", "uz", "rx", "ry", "rz"];
 
+/// The terms of a row of T.
+type Row = Vec<(usize, f64)>;
 /// The terms of the six rows of a node of T.
-type Rows = [Vec<(usize, f64)>; 6];
+type Rows = [Row; 6];
 
 /// The map u = T q between nodes and free degrees of freedom.
 #[derive(Debug, Clone)]
@@ -180,12 +183,10 @@ impl DofMap {
     /// The map of `model` with its `elements`, whose node indices and geometry are known to be valid.
     pub(super) fn new(model: &Model, elements: &[AnyElement]) -> Result<Self> {
         let mut faults = Faults::new();
-        let masters = resolve_links(model, &mut faults);
+        let masters = check_unnamed(model, &mut faults);
         faults.into_result(())?;
-        let mut spaces = active_spaces(model.nodes.len(), elements);
-        let lengths = lead(model, &masters, &mut spaces);
-
-        let mut held = vec![[false; 6]; model.nodes.len()];
+        let n_nodes = model.nodes.len();
+        let mut held = vec![[false; 6]; n_nodes];
         for support in &model.supports {
             for node in &support.nodes {
                 for (h, s) in held[*node].iter_mut().zip(support.held) {
@@ -193,21 +194,29 @@ impl DofMap {
                 }
             }
         }
+        let mut inclined: BTreeMap<usize, Vec<[f64; 6]>> = BTreeMap::new();
+        for support in &model.inclined_supports {
+            inclined.entry(support.node).or_default().extend(&support.held);
+        }
         let drilling = Drilling::new(model, &masters, &held);
-        let own =
-            |node: &usize| (masters[*node] != *node && drilling.normal(*node).is_some()).then_some(*node);
+        let sums = Sums::new(model, &masters, &drilling);
+        let mut spaces = active_spaces(n_nodes, elements);
+        let lengths = lead(&sums, &mut spaces);
+
+        let leaders: BTreeMap<usize, Vec<usize>> =
+            sums.slave_nodes().into_iter().map(|node| (node, sums.nodes_of(node))).collect();
         let coupling = |nodes: &[usize]| -> Vec<usize> {
-            nodes.iter().map(|node| masters[*node]).chain(nodes.iter().filter_map(own)).collect()
+            let of = |node| leaders.get(node).map_or(std::slice::from_ref(node), Vec::as_slice);
+            nodes.iter().flat_map(of).copied().collect()
         };
         let coupled: Vec<Vec<usize>> = elements.iter().map(|e| coupling(e.nodes())).collect();
         let mut free = Vec::new();
-        let mut of_node = vec![0..0; model.nodes.len()];
-        for node in node_order(model.nodes.len(), &coupled) {
+        let mut of_node = vec![0..0; n_nodes];
+        for node in node_order(n_nodes, &coupled) {
             let first = free.len();
-            if masters[node] == node {
-                let directions = spaces[node].free_directions(held[node], lengths[node]);
-                free.extend(directions.into_iter().map(|direction| FreeDof { node, direction }));
-            }
+            let inclined = inclined.get(&node).map_or(&[][..], Vec::as_slice);
+            let directions = spaces[node].free_directions(held[node], inclined, lengths[node]);
+            free.extend(directions.into_iter().map(|direction| FreeDof { node, direction }));
             if let Some([x, y, z]) = drilling.normal(node) {
                 free.push(FreeDof { node, direction: [0.0, 0.0, 0.0, x, y, z] });
             }
@@ -220,44 +229,65 @@ impl DofMap {
             ));
         }
 
-        // The rows of a node with its own rotation about the normal, or with that of the body that it is part of.
-        let rows = |node: usize, turns: bool| -> Rows {
-            let master = masters[node];
-            let arm = Vector3::from(model.nodes[node]) - Vector3::from(model.nodes[master]);
-            let normal = drilling.normal(node);
-            let mut motions: Vec<(usize, [f64; 6])> =
-                of_node[master].clone().map(|k| (k, moved(&free[k].direction, &arm))).collect();
-            if let Some(normal) = normal {
-                if master != node && turns {
-                    for (_, motion) in &mut motions {
-                        let about: f64 = (0..3).map(|k| normal[k] * motion[3 + k]).sum();
-                        (0..3).for_each(|k| motion[3 + k] -= about * normal[k]);
-                    }
-                    motions.extend(of_node[node].clone().map(|k| (k, free[k].direction)));
-                } else if master == node && !turns {
-                    // It comes last of the node's own.
-                    motions.pop();
-                }
-            }
-            std::array::from_fn(|dof| {
-                motions.iter().filter(|(_, m)| m[dof] != 0.0).map(|(k, m)| (*k, m[dof])).collect()
-            })
+        let own = |node: usize, dof: usize| -> Row {
+            let moves = of_node[node].clone().map(|k| (k, free[k].direction[dof]));
+            moves.filter(|(_, direction)| *direction != 0.0).collect()
         };
-        let mut starts = Vec::with_capacity(6 * model.nodes.len() + 1);
+        // A sum of degrees of freedom that are no slaves. The rotation about a normal comes last of its node's own.
+        let of_sum = |sum: &[(usize, f64)]| -> Row {
+            let terms = |(row, c): &(usize, f64)| -> Row {
+                let of = match sums.component(*row) {
+                    Some((node, dof)) => own(node, dof),
+                    None => sums.turning(*row).map(|node| (of_node[node].end - 1, 1.0)).into_iter().collect(),
+                };
+                of.into_iter().map(|(k, t)| (k, c * t)).collect()
+            };
+            added(sum.iter().flat_map(terms).collect())
+        };
+        let of_row = |row: usize| sums.of(row).map_or_else(|| own(row / 6, row % 6), of_sum);
+        let mut starts = Vec::with_capacity(6 * n_nodes + 1);
         let mut terms = Vec::with_capacity(free.len());
         let mut rigid = BTreeMap::new();
         starts.push(0);
-        for node in 0..model.nodes.len() {
-            for row in rows(node, true) {
-                terms.extend(row);
+        for node in 0..n_nodes {
+            for row in 6 * node..6 * node + 6 {
+                terms.extend(of_row(row));
                 starts.push(terms.len());
             }
+            // The same without the rotation about the normal: that of the master, or of the ground.
             if drilling.normal(node).is_some() {
-                rigid.insert(node, rows(node, false));
+                let of_master = |sum: Row| -> Row {
+                    let scaled =
+                        |(row, c): (usize, f64)| of_row(row).into_iter().map(move |(k, t)| (k, c * t));
+                    added(sum.into_iter().flat_map(scaled).collect())
+                };
+                let rows: Rows = if masters[node] == node {
+                    let last = of_node[node].end - 1;
+                    std::array::from_fn(|dof| {
+                        own(node, dof).into_iter().filter(|(k, _)| *k != last).collect()
+                    })
+                } else {
+                    rigid_rows(model, node, masters[node]).map(of_master)
+                };
+                rigid.insert(node, rows);
             }
         }
         Ok(DofMap { nodes: model.nodes.clone(), free, starts, terms, drilling, rigid })
     }
+}
+
+/// The terms of a row of T, each degree of freedom once, ascending.
+fn added(mut terms: Row) -> Row {
+    terms.sort_by_key(|(k, _)| *k);
+    let mut sum: Row = Vec::with_capacity(terms.len());
+    for (k, value) in terms {
+        match sum.last_mut() {
+            Some((last, total)) if *last == k => *total += value,
+            _ => sum.push((k, value)),
+        }
+    }
+    sum.retain(|(_, value)| *value != 0.0);
+    sum
 }
 
 /// The rigid motion (u, θ) at a point `arm` away: (u + θ × arm, θ).

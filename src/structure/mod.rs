@@ -7,6 +7,7 @@
 
 mod as_plate;
 mod assembly;
+mod averaging;
 mod check;
 mod constraints;
 mod dofs;
@@ -22,20 +23,24 @@ mod registry;
 pub(crate) mod samples;
 mod scatter;
 mod section;
-mod ties;
+mod spaces;
+mod tie;
 mod users;
 mod warnings;
 
 pub use as_plate::as_plate;
 pub use assembly::{Assembled, GeometricStiffness, assemble};
+pub use averaging::averaging;
 pub use check::check;
+pub use constraints::{ConstraintWords, check_constraints};
 pub use dofs::{DofMap, FreeDof};
 pub use elements::waves::{thickness_error, thickness_shear_frequency};
 pub use free::{FreePart, free_parts, is_free_along, unresisted_parts};
 pub use material::{Material, RayleighDamping};
 pub use model::{
-    Bar, Model, Part, PartKind, PlateTheory, PointMass, RigidLink, Shell, Solid, Spring, Support,
+    Bar, Constraint, Coupling, InclinedSupport, Model, Part, PartKind, PlateTheory, PointMass, RigidLink,
+    Shell, Solid, Spring, Support,
 };
 pub use section::Section;
-pub use ties::{TieWords, check_ties};
+pub use tie::{Tie, Tied, tied};
 pub use warnings::{ThicknessError, element_size, thickness_errors};

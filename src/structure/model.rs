@@ -20,8 +20,12 @@ pub struct Model {
     pub springs: Vec<Spring>,
     /// Rigid links, eliminated exactly.
     pub links: Vec<RigidLink>,
+    /// Other constraints, such as those of ties, eliminated exactly.
+    pub couplings: Vec<Coupling>,
     /// Held degrees of freedom.
     pub supports: Vec<Support>,
+    /// Held directions that are along no axis.
+    pub inclined_supports: Vec<InclinedSupport>,
 }
 
 choices! {
@@ -271,6 +275,38 @@ pub struct RigidLink {
     pub master: usize,
     /// The nodes that follow.
     pub slaves: Vec<usize>,
+}
+
+/// A slave degree of freedom as a sum of others, u_slave = Σ c u.
+///
+/// A degree of freedom is a node and a component, 0 … 5 for ux … rz. Others that are slaves themselves are replaced by what they are
+/// sums of; the forces on a slave act on its masters, F_master = Σ c F_slave.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Constraint {
+    /// The slave.
+    pub slave: (usize, usize),
+    /// Masters with their coefficients: node, component, c.
+    pub terms: Vec<(usize, usize, f64)>,
+}
+
+/// Constraints of one origin, as of a tie.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Coupling {
+    /// How messages name it.
+    pub name: String,
+    /// Its constraints, one for each slave degree of freedom.
+    pub constraints: Vec<Constraint>,
+}
+
+/// Held directions of one node.
+#[derive(Debug, Clone, PartialEq)]
+pub struct InclinedSupport {
+    /// The node.
+    pub node: usize,
+    /// Unit vectors of (ux, uy, uz) or of (rx, ry, rz), each across the others.
+    pub held: Vec<[f64; 6]>,
+    /// How messages name it.
+    pub name: String,
 }
 
 /// Held degrees of freedom.

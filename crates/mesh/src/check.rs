@@ -45,7 +45,7 @@ pub fn diagnose(mesh: &Mesh) -> Diagnosis {
     diagnose_apart(mesh, &[])
 }
 
-/// The same of a mesh in which the two regions of each pair are in contact: their nodes may be in the same place, or on each other's
+/// The same of a mesh in which the two regions of each pair are in contact, or tied: their nodes may be in the same place, or on each other's
 /// edges, without being joined.
 pub fn diagnose_apart(mesh: &Mesh, pairs: &[[&str; 2]]) -> Diagnosis {
     let mut faults = Faults::new();
@@ -68,7 +68,7 @@ pub fn diagnose_apart(mesh: &Mesh, pairs: &[[&str; 2]]) -> Diagnosis {
     diagnosis
 }
 
-/// The nodes of regions that are in contact, a pair of sets each.
+/// The nodes of regions that are in contact or tied, a pair of sets each.
 struct Apart(Vec<[HashSet<usize>; 2]>);
 
 impl Apart {
@@ -195,7 +195,10 @@ fn check_coincident(mesh: &Mesh, apart: &Apart, diagnosis: &mut Diagnosis) {
     if !between.is_empty() {
         let fault =
             Fault::new(text(&between), "two nodes at the same place in different regions", "one node");
-        diagnosis.warnings.push(fault.with_help("The parts are not joined there unless the case joins them"));
+        diagnosis.warnings.push(fault.with_help(
+            "The parts are not joined there unless the case joins them: merge the nodes (Gmsh: `Coherence Mesh;`), or join the surfaces by \
+             `[tie]`",
+        ));
     }
 }
 
@@ -228,7 +231,7 @@ fn check_hanging(mesh: &Mesh, apart: &Apart, warnings: &mut Vec<Fault>) {
         names.join(", ")
     );
     let help = "They are not joined there: mesh both sides with the same nodes (one curve between both surfaces; in Gmsh \
-                `Coherence;` or `BooleanFragments`), or hold them together by `[rigid]` or `[spring]`";
+                `Coherence;` or `BooleanFragments`), or join the edge or the faces of one side to the other side by `[tie]`";
     warnings.push(Fault::new(nodes(mesh, &which), words, "nodes that both sides have").with_help(help));
 }
 
