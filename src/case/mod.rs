@@ -40,7 +40,8 @@ pub use matrices::{Factor, Matrices, MatrixTerm};
 pub use measured::{MeasuredData, Transform};
 pub use mesh::{AnnulusMesh, LengthUnit, MeshSource, PlateMesh, RigMesh};
 pub use model::{
-    Averaging, Axis, Bar, Force, Held, Mass, Profile, Rigid, Shell, Solid, SpringSet, StructureDamping, Tie,
+    Averaging, Axis, Bar, Force, Held, Mass, Profile, Rigid, Shell, Solid, SpringPer, SpringSet,
+    StructureDamping, Tie,
 };
 pub(crate) use parameter::path_matches;
 pub use sound::{AirChoice, Microphone, ON_AXIS, SoundAnalysis};

@@ -1,7 +1,7 @@
 //! `[shell]`, `[bar]`, `[solid]`, `[mass]`, `[spring]`, `[rigid]`, `[averaging]`, `[tie]`, `[support]`, `[force]`, `[damping]`: the structure.
 
 use crate::schema::units::*;
-use crate::schema::{Derivative, Invalidates, Report, declare, key, variants};
+use crate::schema::{Derivative, Invalidates, Report, choices, declare, key, variants};
 use crate::structure::{PlateTheory, Section};
 use std::ops::Bound;
 
@@ -95,25 +95,53 @@ declare! {
     }
 }
 
+choices! {
+    /// What the stiffness of springs belongs to.
+    pub enum SpringPer {
+        /// The region, shared equally by its nodes \[N/m\].
+        Region = "region",
+        /// The area of faces \[N/m³\].
+        Area = "area",
+    }
+}
+
 declare! {
-    /// Springs from the nodes of a region to the ground, or from one point to another.
-    pub struct SpringSet {
-        /// The region whose nodes are sprung; the stiffness is shared equally among them.
+    /// Springs from the nodes of a region to the ground or to a point, or spread between two faces.
+    pub struct SpringSet, checked by check_spring {
+        /// The region whose nodes are sprung.
         pub on: String = key::name("a region"),
-        /// A region of one point at the other end; the ground when absent.
-        pub to: Option<String> = key::name("a region of one point").optional(),
+        /// The other end, the ground when absent: a region of one point; per area a shell, or a region of faces, onto which the nodes
+        /// of `on` are projected as those of a [tie].
+        pub to: Option<String> = key::name("a region of one point; per area a shell, or a region of faces").optional(),
         /// Direction.
         pub direction: [f64; 3] = key::direction().expecting("a direction such as [1, 0, 0]"),
         /// Acts on rotations.
         pub rotational: bool = key::flag(false),
-        /// Total k \[N/m or N m\].
-        pub stiffness: f64 =
-            key::quantity(if *rotational { ROTATIONAL_STIFFNESS } else { STIFFNESS }).non_negative(),
-        /// Total c \[N s/m or N m s\].
-        pub damping: f64 = key::quantity(if *rotational { ROTATIONAL_DASHPOT } else { DASHPOT })
-            .non_negative()
-            .or(0.0)
-            .invalidates(Invalidates::Damping),
+        /// What `stiffness` and `damping` belong to: the region, or its area.
+        pub per: SpringPer = key::choice().or(SpringPer::Region),
+        /// Total k \[N/m or N m\], shared equally by the nodes, or k per area \[N/m³\].
+        pub stiffness: f64 = key::quantity(match per {
+            SpringPer::Area => STIFFNESS.per_metre(2, "N/m^3", "a stiffness per area such as \"10 GN/m^3\""),
+            SpringPer::Region if *rotational => ROTATIONAL_STIFFNESS,
+            SpringPer::Region => STIFFNESS,
+        })
+        .non_negative(),
+        /// Total c \[N s/m or N m s\], or c per area \[N s/m³\].
+        pub damping: f64 = key::quantity(match per {
+            SpringPer::Area => DASHPOT.per_metre(2, "N s/m^3", "a damping constant per area such as \"1 MN*s/m^3\""),
+            SpringPer::Region if *rotational => ROTATIONAL_DASHPOT,
+            SpringPer::Region => DASHPOT,
+        })
+        .non_negative()
+        .or(0.0)
+        .invalidates(Invalidates::Damping),
+    }
+}
+
+fn check_spring(spring: &SpringSet, report: &mut Report) {
+    if spring.rotational && spring.per == SpringPer::Area {
+        let expected = "false with `per = \"area\"`: springs spread over faces act on displacements";
+        report.fault("rotational", "true", expected, "");
     }
 }
 
@@ -157,6 +185,8 @@ declare! {
 pub(crate) const DOF_NAMES: [&str; 6] = ["ux", "uy", "uz", "rx", "ry", "rz"];
 /// The names of displacements about an axis: away from it, around it, along it.
 pub(crate) const ABOUT_AXIS: [&str; 3] = ["radial", "tangential", "axial"];
+/// What may be held.
+const HELD: &str = "\"all\", or some of ux, uy, uz, rx, ry, rz; with an `axis` of radial, tangential, axial";
 
 declare! {
     /// The axis of cylindrical directions.
@@ -173,10 +203,10 @@ declare! {
     pub struct Held, checked by check_held {
         /// The regions.
         pub on: Vec<String> = key::names("a region, or a list of them").not_empty(),
-        /// Names of held degrees of freedom among ux, uy, uz, rx, ry, rz, with an `axis` among radial, tangential, axial, or `all`. Along an edge with no displacement the rotation about the
-        /// normal of a membrane stays free: it is half the shear strain there.
-        pub held: Vec<String> = key::names("\"all\", or some of ux, uy, uz, rx, ry, rz; with an `axis` of radial, tangential, axial")
-            .check("\"all\", or some of ux, uy, uz, rx, ry, rz; with an `axis` of radial, tangential, axial", |list| {
+        /// Names of held degrees of freedom among ux, uy, uz, rx, ry, rz, with an `axis` among radial, tangential, axial, or `all`. Along
+        /// an edge with no displacement the rotation about the normal of a membrane stays free: it is half the shear strain there.
+        pub held: Vec<String> = key::names(HELD)
+            .check(HELD, |list| {
                 let known = |name: &str| DOF_NAMES.contains(&name) || ABOUT_AXIS.contains(&name);
                 list.iter().all(|name| name == "all" || known(name))
             })

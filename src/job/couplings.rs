@@ -1,13 +1,14 @@
-//! The ties and averaging links of a case.
+//! The ties and averaging links of a case, and its springs between faces.
 
 use super::counter::{CounterFaces, counter_faces};
 use super::regions::Regions;
-use crate::case::{Averaging, Case, Tie};
+use crate::case::{Averaging, Case, SpringPer, SpringSet, Tie};
 use crate::contact::tributary;
 use crate::error::{Error, Fault, Faults, Result};
 use crate::mesh::{Cell, made_of};
 use crate::numbers::{components, given};
-use crate::structure::{Coupling, Model, averaging, tied};
+use crate::structure::{self, Constraint, Coupling, Model, Part, Spring, Tied, averaging, tied};
+use std::collections::BTreeMap;
 
 /// Adds the ties and the averaging links of the case to `model`; `warnings` say what of a tie is not joined, and which gaps are kept.
 pub fn add_couplings(
@@ -22,7 +23,7 @@ pub fn add_couplings(
         all.extend(faults.take(averaging_link(name, link, regions, model)));
     }
     for (name, tie) in &case.tie {
-        all.extend(faults.take(surfaces(name, tie, regions, model, warnings)));
+        all.extend(faults.take(tie_of(name, tie, regions, model, warnings)));
     }
     model.couplings.extend(all);
 }
@@ -65,89 +66,152 @@ fn averaging_link(name: &str, link: &Averaging, regions: &Regions, model: &Model
     Ok(Coupling { name: format!("`averaging.{name}`"), constraints })
 }
 
-fn surfaces(
+fn tie_of(
     name: &str,
     tie: &Tie,
     regions: &Regions,
     model: &Model,
     warnings: &mut Vec<String>,
 ) -> Result<Coupling> {
-    let [on, to] = ["on", "to"].map(|key| format!("`tie.{name}.{key}`"));
-    let mut faults = Faults::new();
-    let region = faults.take(regions.region(&tie.on, &on));
-    let master = faults.take(counter_faces(&tie.to, regions, model, (&to, "")));
-    let (Some(region), Some(CounterFaces { part: master, faces })) = faults.into_result((region, master))?
-    else {
-        return Ok(Coupling { name: format!("`tie.{name}`"), constraints: Vec::new() });
-    };
-    let nodes = regions.mesh.region_nodes(region);
-    let expected = "faces of one shell or solid, or lines on the edge of a shell";
-    let refused = |found: String, help: &str| Error::input(Fault::new(&on, found, expected).with_help(help));
-    let Some(slave) = model.part_with(&nodes) else {
-        let found = format!("region \"{}\", whose nodes are not all on one shell or one solid", tie.on);
-        return Err(refused(found, "Tie each part by a [tie] of its own"));
-    };
-    if !(region.dimension == 2 || region.dimension == 1 && slave.as_shell().is_some()) {
-        let found = format!("region \"{}\" of {} on `{}`", tie.on, made_of(region.dimension), slave.name);
-        return Err(refused(found, "Give the surface a name of its own, as a physical group of the mesh"));
-    }
-    let cells = regions.cells(region);
-    let found = tied(&crate::structure::Tie {
-        nodes: &model.nodes,
-        slave,
-        cells: &cells,
-        master,
-        faces: &faces,
-        within: tie.within,
-    });
-    let farthest = found.far.iter().max_by(|a, b| a.1.total_cmp(&b.1));
-    if found.following.is_empty() {
-        let (found, help) = match farthest {
-            Some((_, gap)) => {
-                let nearest = found.far.iter().map(|(_, gap)| *gap).fold(*gap, f64::min);
-                let found = format!(
-                    "no node within {} m of `{}`: the nearest is {} m away",
-                    given(found.within),
-                    tie.to,
-                    given(nearest)
-                );
-                (
-                    found,
-                    format!(
-                        "Bring the surfaces together, check the unit of the mesh, or say `within = {:.3e}`",
-                        1.01 * nearest
-                    ),
-                )
-            }
-            None => {
-                (format!("nodes that `{}` has, too", tie.to), "They are joined: remove the tie".to_string())
-            }
-        };
-        let fault = Fault::new(&on, found, "nodes near the other surface, that are not its own");
-        return Err(Error::input(fault.with_help(help)));
-    }
-    if let Some((node, gap)) = farthest {
-        let far: Vec<usize> = found.far.iter().map(|(node, _)| *node).collect();
-        warnings.push(format!(
-            "`tie.{name}`: {} of \"{}\" not joined to `{}`: farther than {} m, at most {} m at ({}) m",
-            match far[..] {
-                [_] => format!("{} is", regions.count_of_nodes(&far)),
-                _ => format!("{} are", regions.count_of_nodes(&far).trim_end_matches(',')),
-            },
-            tie.on,
-            tie.to,
-            given(found.within),
-            given(*gap),
-            components(model.nodes[*node])
-        ));
-    }
+    let place = format!("tie.{name}");
+    let found = projected(&place, [&tie.on, &tie.to], tie.within, (regions, model), warnings)?;
     if found.largest_gap > 0.0 {
         warnings.push(format!(
-            "`tie.{name}`: gaps up to {} m between \"{}\" and `{}` are kept, and bridged rigidly",
+            "`{place}`: gaps up to {} m between \"{}\" and `{}` are kept, and bridged rigidly",
             given(found.largest_gap),
             tie.on,
             tie.to
         ));
     }
-    Ok(Coupling { name: format!("`tie.{name}`"), constraints: found.constraints })
+    Ok(Coupling { name: format!("`{place}`"), constraints: found.constraints })
+}
+
+/// The surface `on`, projected on the surface `to`; `warnings` say which nodes are too far away.
+fn projected(
+    place: &str,
+    [on, to]: [&str; 2],
+    within: Option<f64>,
+    (regions, model): (&Regions, &Model),
+    warnings: &mut Vec<String>,
+) -> Result<Tied> {
+    let at = |key: &str| format!("`{place}.{key}`");
+    let mut faults = Faults::new();
+    let surface = faults.take(surface(&at("on"), on, regions, model));
+    let master = faults.take(counter_faces(to, regions, model, (&at("to"), "")));
+    let (surface, master) = faults.into_result((surface, master))?;
+    let (Some((slave, cells)), Some(CounterFaces { part: master, faces })) = (surface, master) else {
+        return Err(Error::Input(Faults::new()));
+    };
+    let found =
+        tied(&structure::Tie { nodes: &model.nodes, slave, cells: &cells, master, faces: &faces, within });
+    let farthest = found.far.iter().max_by(|a, b| a.1.total_cmp(&b.1));
+    if found.following.is_empty() {
+        let (what, help) = match farthest {
+            Some((_, gap)) => {
+                let nearest = found.far.iter().map(|(_, gap)| *gap).fold(*gap, f64::min);
+                let (within, nearest) = (given(found.within), given(nearest));
+                let what = format!("no node within {within} m of `{to}`: the nearest is {nearest} m away");
+                (
+                    what,
+                    "Bring the surfaces together, check the unit of the mesh, or give a larger `within` to a [tie]",
+                )
+            }
+            None => (format!("nodes that `{to}` has, too"), "They are joined already: remove this table"),
+        };
+        let fault = Fault::new(at("on"), what, "nodes near the other surface, that are not its own");
+        return Err(Error::input(fault.with_help(help)));
+    }
+    if let Some((node, gap)) = farthest {
+        let far: Vec<usize> = found.far.iter().map(|(node, _)| *node).collect();
+        let nodes = regions.count_of_nodes(&far);
+        warnings.push(format!(
+            "`{place}`: {} of \"{on}\" {} not joined to `{to}`: farther than {} m, at most {} m at {} m",
+            nodes.trim_end_matches(','),
+            if far.len() == 1 { "is" } else { "are" },
+            given(found.within),
+            given(*gap),
+            components(model.nodes[*node])
+        ));
+    }
+    Ok(found)
+}
+
+/// The cells of a region of faces on one shell or solid, or of lines on one shell, and that part.
+fn surface<'a>(
+    place: &str,
+    name: &str,
+    regions: &Regions,
+    model: &'a Model,
+) -> Result<(&'a Part, Vec<Cell>)> {
+    let region = regions.region(name, place)?;
+    let expected = "faces of one shell or solid, or lines on the edge of a shell";
+    let refused =
+        |found: String, help: &str| Error::input(Fault::new(place, found, expected).with_help(help));
+    let Some(part) = model.part_with(&regions.mesh.region_nodes(region)) else {
+        let found = format!("region \"{name}\", whose nodes are not all on one shell or one solid");
+        return Err(refused(
+            found,
+            "Name the surface of each part by itself, as a physical group of the mesh",
+        ));
+    };
+    if region.dimension == 2 || region.dimension == 1 && part.as_shell().is_some() {
+        return Ok((part, regions.cells(region)));
+    }
+    let found = format!("region \"{name}\" of {} on `{}`", made_of(region.dimension), part.name);
+    Err(refused(found, "Give the surface a name of its own, as a physical group of the mesh"))
+}
+
+/// Adds the springs of the case that are spread over faces. The far end of each, where it is not the ground, is a node of its own that
+/// follows the other face as a tie does.
+pub fn add_area_springs(
+    case: &Case,
+    regions: &Regions,
+    model: &mut Model,
+    warnings: &mut Vec<String>,
+    faults: &mut Faults,
+) {
+    for (name, set) in case.spring.iter().filter(|(_, set)| set.per == SpringPer::Area) {
+        faults.take(area_springs(name, set, regions, model, warnings));
+    }
+}
+
+fn area_springs(
+    name: &str,
+    set: &SpringSet,
+    regions: &Regions,
+    model: &mut Model,
+    warnings: &mut Vec<String>,
+) -> Result<()> {
+    let place = format!("spring.{name}");
+    let region = regions.region(&set.on, &format!("`{place}.on`"))?;
+    if region.dimension != 2 {
+        let found = format!("region \"{}\" of {}, with `per = \"area\"`", set.on, made_of(region.dimension));
+        return Err(Error::input(Fault::new(format!("`{place}.on`"), found, "a region of faces")));
+    }
+    let weights = tributary(&model.nodes, &regions.cells(region));
+    let nodes = regions.mesh.region_nodes(region);
+    let mut ends: Vec<(usize, Option<usize>)> = nodes.iter().map(|node| (*node, None)).collect();
+    if let Some(to) = &set.to {
+        let found = projected(&place, [&set.on, to], None, (regions, model), warnings)?;
+        let mut far = BTreeMap::new();
+        for node in &found.following {
+            far.insert(*node, model.nodes.len());
+            model.nodes.push(model.nodes[*node]);
+        }
+        // Of the plate's own rotations the far end has those of the node that it belongs to.
+        let displacements = found.constraints.into_iter().filter(|constraint| constraint.slave.1 < 3);
+        let moved = displacements.map(|c| Constraint { slave: (far[&c.slave.0], c.slave.1), ..c });
+        let coupling = Coupling { name: format!("`{place}`"), constraints: moved.collect() };
+        model.couplings.push(coupling);
+        ends = far.into_iter().map(|(node, far)| (node, Some(far))).collect();
+    }
+    model.springs.extend(ends.into_iter().map(|(node, other)| Spring {
+        node,
+        other,
+        direction: set.direction,
+        rotational: false,
+        stiffness: set.stiffness * weights[node],
+        damping: set.damping * weights[node],
+    }));
+    Ok(())
 }

@@ -1,9 +1,9 @@
 //! Case and mesh → the plain description of the structure, for the whole or for some of its parts.
 
-use super::couplings::add_couplings;
+use super::couplings::{add_area_springs, add_couplings};
 use super::links::{add_links, check_turning};
 use super::regions::Regions;
-use crate::case::{Case, ModesAnalysis};
+use crate::case::{Case, ModesAnalysis, SpringPer};
 use crate::error::{Fault, Faults, Result};
 use crate::mesh::Cell;
 use crate::structure::{Bar, Model, Part, PointMass, Shell, Solid, Spring, Support};
@@ -42,7 +42,7 @@ pub fn whole_model(case: &Case, regions: &Regions, warnings: &mut Vec<String>) -
             model.masses.push(PointMass { node, mass: mass.mass, inertia: mass.inertia });
         }
     }
-    for (name, spring) in &case.spring {
+    for (name, spring) in case.spring.iter().filter(|(_, spring)| spring.per == SpringPer::Region) {
         let nodes =
             faults.take(regions.nodes(&spring.on, &format!("`spring.{name}.on`"))).unwrap_or_default();
         let other =
@@ -63,6 +63,7 @@ pub fn whole_model(case: &Case, regions: &Regions, warnings: &mut Vec<String>) -
             });
         }
     }
+    add_area_springs(case, regions, &mut model, warnings, &mut faults);
     add_couplings(case, regions, &mut model, warnings, &mut faults);
     add_links(case, regions, &mut model, &mut faults);
     check_turning(case, regions, &model, &mut faults);
@@ -98,6 +99,12 @@ pub fn part_model(
     let clamp = regions.nodes_of(&analysis.clamp, &format!("`modes.{name}.clamp`"), &mut faults);
     let mut used = vec![!case.point.is_empty() && analysis.parts.is_empty(); model.nodes.len()];
     model.parts.iter().flat_map(|part| &part.cells).flat_map(Cell::nodes).for_each(|n| used[*n] = true);
+    // The far ends of springs that are spread over faces.
+    let ends = regions.mesh.nodes.len();
+    for constraint in model.couplings.iter().flat_map(|coupling| &coupling.constraints) {
+        let slave = constraint.slave.0;
+        used[slave] |= slave >= ends && constraint.terms.iter().all(|(node, ..)| used[*node]);
+    }
     // What hangs on nodes of other parts stays out; so does a rigid body whose clamped followers already hold it.
     model.masses.retain(|mass| used[mass.node]);
     model.springs.retain(|spring| used[spring.node] && spring.other.is_none_or(|n| used[n]));

@@ -79,7 +79,7 @@ fn faults_of_ties_are_told_with_key_and_line() {
     };
     expect(
         of(0.5, &tie("right x_min", "left x_max")),
-        &["a.toml:15 `tie.a.on`", "the nearest is 0.5 m away", "within = 5.050e-1"],
+        &["a.toml:15 `tie.a.on`", "the nearest is 0.5 m away", "a larger `within`"],
     );
     expect(
         of(0.0, &tie("right x_mim", "left x_max")),
@@ -141,6 +141,34 @@ fn rotations_of_solids_are_refused_with_what_to_write() {
     )
     .unwrap_err();
     assert!(text.contains("`support.h.on`") && text.contains("`averaging.m`"), "{text}");
+}
+
+/// Springs per area act by the area, whatever the meshes are, and on rotations by the way they are spread: two blocks of 0.08 kg on springs of 1 GN/m³ over
+/// 200 mm².
+#[test]
+fn springs_per_area_act_on_displacements_and_rotations_of_faces() {
+    let of = |to: &str, free: usize, mass: f64| {
+        let text = format!(
+            "{PARTS}[spring.a]\non = \"right x_min\"\n{to}per = \"area\"\ndirection = [1, 0, 0]\nstiffness = \"1 GN/m^3\"\n"
+        );
+        let (found, _) = answer(&bar(1e-5), &text, 12).unwrap();
+        assert!(found[free - 1] < 1.0 && found[free] > 50.0, "{to}: {found:?}");
+        let right = (1e9_f64 * 2e-4 / mass).sqrt() / std::f64::consts::TAU;
+        // The blocks are not rigid: 1e-3 by E A/l beside the springs.
+        assert!(found[free..].iter().any(|f| (f / right - 1.0).abs() < 1e-3), "{to}: {found:?} {right}");
+    };
+    of("to = \"left x_max\"\n", 9, 0.04);
+    of("", 9, 0.08);
+    let fault = |tables: &str| {
+        answer(&bar(0.0), &format!("{PARTS}[spring.a]\n{tables}direction = [1, 0, 0]\nstiffness = 1\n"), 1)
+            .unwrap_err()
+    };
+    let text = fault("on = \"right\"\nper = \"area\"\n");
+    assert!(text.contains("`spring.a.on`") && text.contains("a region of faces"), "{text}");
+    let text = fault("on = \"right x_min\"\nper = \"area\"\nrotational = true\n");
+    assert!(text.contains("`spring.a.rotational`"), "{text}");
+    let text = fault("on = \"right x_min\"\nto = \"right x_max\"\nper = \"area\"\n");
+    assert!(text.contains("`spring.a.on`") && text.contains("no node within"), "{text}");
 }
 
 /// A ring in any plane, held about its axis in each set of directions: as many motions stay free as geometry says.

@@ -2,7 +2,7 @@
 
 use super::names::clashing;
 use super::step::check_step;
-use crate::case::{FrictionCurve, TransientAnalysis};
+use crate::case::{FrictionCurve, SpringPer, TransientAnalysis};
 use crate::contact::Coulomb;
 use crate::error::{Error, Fault, Faults, Result};
 use crate::job::contacts::with_laws;
@@ -155,6 +155,14 @@ fn gauge(prepared: &Prepared<'_>, name: &str, spring: &str) -> Result<Gauge> {
         let expected = format!("one of the case's springs ({})", known.join(", "));
         return Err(Error::input(Fault::new(place, format!("\"{spring}\""), expected)));
     };
+    if set.per == SpringPer::Area {
+        let found = format!("\"{spring}\", springs per area");
+        return Err(Error::input(Fault::new(
+            place,
+            found,
+            "springs with one force: those with `per = \"region\"`",
+        )));
+    }
     let nodes = prepared.regions.nodes(&set.on, &format!("`spring.{spring}.on`"))?;
     let other = set.to.as_ref().map(|to| prepared.regions.node(to, &format!("`spring.{spring}.to`")));
     let other = other.transpose()?;
