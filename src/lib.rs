@@ -68,7 +68,7 @@ pub mod uncertainty;
 pub mod validation;
 
 // Members of the workspace, below `crates/`.
-pub use stridor_base::{connected, error, input, memory, numbers, pages, progress};
+pub use stridor_base::{bounds, connected, error, input, memory, numbers, pages, progress};
 pub use stridor_dataset as dataset;
 pub use stridor_linalg as linalg;
 pub use stridor_measured as measured;

@@ -131,6 +131,7 @@ mod tests {
     use super::super::samples::{Powers, problem};
     use super::super::{CalibrationModel, CalibrationProblem};
     use super::*;
+    use crate::bounds::{Origin::*, within};
 
     #[test]
     fn branch_and_bound_finds_what_trying_all_finds() {
@@ -161,7 +162,10 @@ mod tests {
         all.sort_by(|a, b| a.0.total_cmp(&b.0));
         assert!(found.complete && all.len() > 20, "{}", all.len());
         for (found, expected) in found.best.iter().zip(&all) {
-            assert!((found.0 - expected.0).abs() < 1e-6 * (1.0 + expected.0) && found.1 == expected.1);
+            assert!(
+                within((found.0 - expected.0).abs(), 1e-6 * (1.0 + expected.0), RoundOff)
+                    && found.1 == expected.1
+            );
         }
     }
 }

@@ -155,11 +155,12 @@ mod tests {
     use super::super::Unknown;
     use super::super::samples::{Powers, level, problem};
     use super::*;
+    use crate::bounds::{Origin::*, within};
 
     #[test]
     fn students_t_is_that_of_the_tables() {
         for (freedom, t) in [(1.0, 12.706), (2.0, 4.303), (5.0, 2.571), (30.0, 2.042)] {
-            assert!((student(freedom) - t).abs() < 6e-4, "{freedom} {}", student(freedom));
+            assert!(within((student(freedom) - t).abs(), 6e-4, Reference), "{freedom} {}", student(freedom));
         }
     }
 
@@ -167,14 +168,14 @@ mod tests {
     fn the_probability_of_chi2_is_that_of_the_tables() {
         // 95 % points of chi-squared.
         for (freedom, chi2) in [(1.0, 3.841_459), (10.0, 18.307_038), (100.0, 124.342_113)] {
-            assert!((exceeded(chi2, freedom) - 0.05).abs() < 1e-7, "{freedom}");
+            assert!(within((exceeded(chi2, freedom) - 0.05).abs(), 1e-7, Reference), "{freedom}");
         }
         // For many degrees of freedom as many standard deviations away as Wilson and Hilferty say, on either side.
         for freedom in [250.0, 1e3, 1e4, 1e6] {
             for (z, probability) in [(-2.0, 0.977_250), (0.0, 0.5), (2.0, 0.022_750)] {
                 let h: f64 = 2.0 / (9.0 * freedom);
                 let found = exceeded(freedom * (1.0 - h + z * h.sqrt()).powi(3), freedom);
-                assert!((found - probability).abs() < 2e-5, "{freedom}, {z}: {found}");
+                assert!(within((found - probability).abs(), 2e-5, Theory), "{freedom}, {z}: {found}");
             }
         }
         assert!(exceeded(1e300, 500.0) == 0.0 && exceeded(0.0, 500.0) == 1.0);
@@ -199,13 +200,17 @@ mod tests {
         };
         let known = Knowledge::new(&problem, &[0, 1, 2, 3], &fit);
         let spread = 10.0;
-        assert!((known.deviations[1] - 0.01 / f64::sqrt(spread)).abs() < 1e-12);
-        assert!((known.deviations[0] - 0.01 * f64::sqrt(14.0 / (4.0 * spread))).abs() < 1e-12);
-        assert!((known.correlations[0][1] + 4.0 / f64::sqrt(14.0 * 4.0)).abs() < 1e-12);
+        assert!(within((known.deviations[1] - 0.01 / f64::sqrt(spread)).abs(), 1e-12, RoundOff));
+        assert!(within(
+            (known.deviations[0] - 0.01 * f64::sqrt(14.0 / (4.0 * spread))).abs(),
+            1e-12,
+            RoundOff
+        ));
+        assert!(within((known.correlations[0][1] + 4.0 / f64::sqrt(14.0 * 4.0)).abs(), 1e-12, RoundOff));
         let half = known.scaled_intervals.as_ref().unwrap()[1][1];
-        assert!((half - 4.3027 * f64::sqrt(3.0) * known.deviations[1]).abs() < 1e-5);
+        assert!(within((half - 4.3027 * f64::sqrt(3.0) * known.deviations[1]).abs(), 1e-5, Reference));
         // P(χ² > 6) with two degrees of freedom is e⁻³.
-        assert!((known.chi2_probability.unwrap() - (-3.0f64).exp()).abs() < 1e-9);
+        assert!(within((known.chi2_probability.unwrap() - (-3.0f64).exp()).abs(), 1e-9, RoundOff));
         assert!(known.determined() == 2 && known.condition() < 10.0);
         // A third unknown without effect is reported.
         problem.unknowns.push(Unknown { bounds: [-1.0, 1.0], expected: None });
@@ -215,6 +220,6 @@ mod tests {
         let known = Knowledge::new(&problem, &[0, 1, 2, 3], &fit);
         assert!(known.determined() == 2 && known.condition().is_infinite());
         assert_eq!(known.intervals[2], [-1.0, 1.0]);
-        assert!((known.directions[2][2] - 1.0).abs() < 1e-12);
+        assert!(within((known.directions[2][2] - 1.0).abs(), 1e-12, RoundOff));
     }
 }

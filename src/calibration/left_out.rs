@@ -118,6 +118,7 @@ mod tests {
     use super::super::samples::{Powers, SampledResponse, curves, problem};
     use super::super::{CalibrationOptions, Computed, Curve, calibrate};
     use super::*;
+    use crate::bounds::{Origin::*, within};
 
     const ALONE: CalibrationOptions =
         CalibrationOptions { reach: 0.03, leave_one_out: true, chance_draws: 0, trials: 0 };
@@ -184,7 +185,7 @@ mod tests {
         problem.data.truncate(1);
         let found = calibrate(&right, &problem, &[0.0; 2], &ALONE, &()).unwrap();
         let left = found.left_out.data[0].predicted_hz.unwrap();
-        assert!((left / data[0] - 1.0).abs() < 2e-3, "{left} {}", data[0]);
+        assert!(within((left / data[0] - 1.0).abs(), 2e-3, RandomSample), "{left} {}", data[0]);
     }
 
     #[test]
@@ -205,7 +206,7 @@ mod tests {
         // Without another response nothing needs its lines to fit, but its prediction does.
         problem.curves.truncate(1);
         let found = calibrate(&model, &problem, &[0.0; 2], &ALONE, &()).unwrap();
-        assert!(after(&found.best().fit.computed, &problem.curves[0]) < 1e-3);
+        assert!(within(after(&found.best().fit.computed, &problem.curves[0]), 1e-3, Tolerance));
         assert_eq!(found.left_out.curves[0].predicted.as_ref().unwrap().len(), 60);
     }
 
@@ -220,10 +221,11 @@ mod tests {
                 model.compute(&x).unwrap().lines
             };
             for ((line, up), down) in here.iter().zip(at(1.0)).zip(at(-1.0)) {
-                assert!(
-                    (line.slope[j] - (up.value - down.value) / (2.0 * h)).abs()
-                        < 1e-4 * (1.0 + line.slope[j].abs())
-                );
+                assert!(within(
+                    (line.slope[j] - (up.value - down.value) / (2.0 * h)).abs(),
+                    1e-4 * (1.0 + line.slope[j].abs()),
+                    Reference
+                ));
             }
         }
     }

@@ -91,6 +91,7 @@ impl CalibrationModel for QuadraticModel {
 mod tests {
     use super::super::samples::{Powers, problem};
     use super::*;
+    use crate::bounds::{Origin::*, within};
 
     #[test]
     fn a_quadratic_model_is_itself() {
@@ -103,8 +104,8 @@ mod tests {
         let (own, exact) = (near.compute(&there).unwrap(), model.compute(&there).unwrap());
         for (a, b) in own.levels.iter().zip(&exact.levels) {
             let (a, b) = (a.as_ref().unwrap(), b.as_ref().unwrap());
-            assert!((a.frequency_hz / b.frequency_hz - 1.0).abs() < 1e-12);
-            assert!(a.slope.iter().zip(&b.slope).all(|(a, b)| (a - b).abs() < 1e-12));
+            assert!(within((a.frequency_hz / b.frequency_hz - 1.0).abs(), 1e-12, RoundOff));
+            assert!(a.slope.iter().zip(&b.slope).all(|(a, b)| within((a - b).abs(), 1e-12, RoundOff)));
         }
     }
 }

@@ -68,6 +68,7 @@ pub(super) fn least_in_box(h: &DMatrix<f64>, g: &DVector<f64>, lower: &[f64], up
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bounds::{Origin::*, within};
     use crate::linalg::random::Random;
 
     #[test]
@@ -85,8 +86,8 @@ mod tests {
                 for j in 0..n {
                     assert!(lower[j] <= x[j] && x[j] <= upper[j]);
                     let (low, high) = (x[j] == lower[j], x[j] == upper[j]);
-                    assert!(low || slope[j] < 1e-6, "{slope} {x}");
-                    assert!(high || slope[j] > -1e-6, "{slope} {x}");
+                    assert!(low || within(slope[j], 1e-6, Tolerance), "{slope} {x}");
+                    assert!(high || within(-slope[j], 1e-6, Tolerance), "{slope} {x}");
                 }
             }
         }
@@ -96,6 +97,9 @@ mod tests {
     fn a_direction_without_curvature_stays() {
         let h = DMatrix::from_row_slice(2, 2, &[1.0, 1.0, 1.0, 1.0]);
         let x = least_in_box(&h, &DVector::from_vec(vec![-1.0, -1.0]), &[-9.0; 2], &[9.0; 2]);
-        assert!((x[0] - 0.5).abs() < 1e-3 && (x[1] - 0.5).abs() < 1e-3, "{x}");
+        assert!(
+            within((x[0] - 0.5).abs(), 1e-3, Tolerance) && within((x[1] - 0.5).abs(), 1e-3, Tolerance),
+            "{x}"
+        );
     }
 }

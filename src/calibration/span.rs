@@ -94,6 +94,7 @@ impl Span {
 mod tests {
     use super::super::samples::turning;
     use super::*;
+    use crate::bounds::{Origin::*, within};
 
     #[test]
     fn what_is_left_of_a_shape_has_the_slopes_of_differences() {
@@ -104,7 +105,7 @@ mod tests {
             let here = at(&x);
             let mac = turning(9, modes, &x).mac(&shape);
             let size: f64 = shape.iter().map(|v| v * v).sum();
-            assert!((here.rest.norm_squared() - (1.0 - mac) * size).abs() < 1e-12 * size);
+            assert!(within((here.rest.norm_squared() - (1.0 - mac) * size).abs(), 1e-12 * size, RoundOff));
             for j in 0..2 {
                 let h = 1e-3;
                 let moved = |k: f64| {
@@ -114,7 +115,10 @@ mod tests {
                 };
                 let expected = (8.0 * (moved(1.0) - moved(-1.0)) - (moved(2.0) - moved(-2.0))) / (12.0 * h);
                 assert!(expected.norm() > 0.01);
-                assert!((&here.slopes[j] - &expected).norm() < 1e-9 * expected.norm(), "{modes} {j}");
+                assert!(
+                    within((&here.slopes[j] - &expected).norm(), 1e-9 * expected.norm(), Reference),
+                    "{modes} {j}"
+                );
             }
         }
     }
@@ -128,13 +132,13 @@ mod tests {
         let slopes = span.slopes.iter().map(|slope| slope * &turn + &span.motions * &turn).collect();
         let other = Span { motions: &span.motions * &turn, slopes };
         let (a, b) = (span.apart(&shape), other.apart(&shape));
-        assert!((a.rest - b.rest).norm() < 1e-12);
-        assert!(a.slopes.iter().zip(&b.slopes).all(|(a, b)| (a - b).norm() < 1e-12));
+        assert!(within((a.rest - b.rest).norm(), 1e-12, RoundOff));
+        assert!(a.slopes.iter().zip(&b.slopes).all(|(a, b)| within((a - b).norm(), 1e-12, RoundOff)));
         let twice = DMatrix::from_fn(7, 2, |i, k| span.motions[(i, 0)] * (1.0 + k as f64));
         let one = Span { motions: twice, slopes: vec![] };
         assert!(one.dimension() == 1 && span.dimension() == 2);
         let near = one.nearest(&shape);
-        assert!((one.mac(&near) - 1.0).abs() < 1e-14);
+        assert!(within((one.mac(&near) - 1.0).abs(), 1e-14, RoundOff));
         let none = Span { motions: DMatrix::zeros(7, 1), slopes: vec![] };
         assert_eq!((none.dimension(), none.mac(&shape)), (0, 0.0));
     }

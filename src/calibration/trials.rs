@@ -154,13 +154,18 @@ impl NormalDeviates {
 mod tests {
     use super::super::samples::{Powers, problem};
     use super::*;
+    use crate::bounds::{Origin::*, within};
 
     #[test]
     fn normal_numbers_have_their_moments() {
         let mut normal = NormalDeviates { random: Random::new(), second: None };
         let all: Vec<f64> = (0..40_000).map(|_| normal.next()).collect();
         let moment = |p: i32| all.iter().map(|x| x.powi(p)).sum::<f64>() / all.len() as f64;
-        assert!(moment(1).abs() < 0.02 && (moment(2) - 1.0).abs() < 0.03 && (moment(4) - 3.0).abs() < 0.2);
+        assert!(
+            within(moment(1).abs(), 0.02, RandomSample)
+                && within((moment(2) - 1.0).abs(), 0.03, RandomSample)
+                && within((moment(4) - 3.0).abs(), 0.2, RandomSample)
+        );
     }
 
     #[test]
@@ -175,7 +180,7 @@ mod tests {
         let start = fit(&model, &problem, &assignment, (&truth, &computed)).unwrap();
         let known = Knowledge::new(&problem, &assignment, &start);
         let trials = Trials::new(&model, &problem, &assignment, (&start, &known), 1000).unwrap();
-        assert!(trials.converged == 1000 && trials.model_error < 1e-9);
+        assert!(trials.converged == 1000 && within(trials.model_error, 1e-9, Tolerance));
         // Four standard deviations of a binomial distribution about 950.
         for covered in trials.covered.iter().chain(trials.scaled_covered.iter().flatten()) {
             assert!((922..=978).contains(covered), "{trials:?}");

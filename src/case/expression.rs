@@ -204,6 +204,7 @@ fn number_length(text: &[u8]) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bounds::{Origin::*, within};
     use crate::linalg::random::Random;
 
     fn of(text: &str, omega: f64) -> Result<Dual, Wrong> {
@@ -224,7 +225,11 @@ mod tests {
             ("--+omega", 2.0, 1.0),
         ] {
             let f = of(text, 2.0).unwrap();
-            assert!((f.value - value).abs() < 1e-14 && (f.slope - slope).abs() < 1e-14, "{text}: {f:?}");
+            assert!(
+                within((f.value - value).abs(), 1e-14, RoundOff)
+                    && within((f.slope - slope).abs(), 1e-14, RoundOff),
+                "{text}: {f:?}"
+            );
         }
         assert_eq!(of("omega^2", 0.0).unwrap(), Dual { value: 0.0, slope: 0.0 });
     }

@@ -95,6 +95,7 @@ impl Bristle {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bounds::{Origin::*, within};
     use crate::contact::{Coulomb, Exponential, Hyperbolic, SlidingLaw, Stribeck};
     use crate::system::ContactLaw;
 
@@ -126,15 +127,15 @@ mod tests {
         };
         let small = at(1e-6, 0.1);
         let bend = weight * (BRISTLE.stiffness + BRISTLE.damping / duration);
-        assert!(small.sticks && (small.forces.friction[0] - bend * 1e-6).abs() < 1e-9);
+        assert!(small.sticks && within((small.forces.friction[0] - bend * 1e-6).abs(), 1e-9, RoundOff));
         assert_eq!(small.bristle, [1e-6, 0.0]);
         // The last force of sticking, and the first of slipping.
         let limit = 0.6 * small.forces.normal / bend;
         let (below, above) = (at(limit * (1.0 - 1e-9), 0.0), at(limit * (1.0 + 1e-9), 0.0));
         assert!(below.sticks && !above.sticks);
-        assert!((below.forces.friction[0] / above.forces.friction[0] - 1.0).abs() < 1e-6);
+        assert!(within((below.forces.friction[0] / above.forces.friction[0] - 1.0).abs(), 1e-6, Theory));
         let far = at(1e-4, 10.0);
-        assert!((far.forces.friction[0] / far.forces.normal - 0.4).abs() < 1e-6);
+        assert!(within((far.forces.friction[0] / far.forces.normal - 0.4).abs(), 1e-6, Theory));
         // An open contact forgets.
         let open = ContactMotion { penetration: -1e-6, ..motion([0.1, 0.0]) };
         let since = SlipStep { bristle: [1e-6, 0.0], slid: [1e-6, 0.0], duration, ..SlipStep::default() };
@@ -155,14 +156,15 @@ mod tests {
                     1.0,
                 );
                 bristle = answer.bristle;
-                assert!(answer.forces.friction[0].hypot(answer.forces.friction[1]) <= 0.7 * steady.normal);
+                let friction = answer.forces.friction[0].hypot(answer.forces.friction[1]);
+                assert!(within(friction / steady.normal - 0.7, 1e-12, RoundOff));
             }
             let answer =
                 law.advance(&motion(v), &SlipStep { bristle, slid, duration, ..SlipStep::default() }, 1.0);
             let same = |found: [f64; 2], expected: [f64; 2]| {
                 let pairs = found.iter().zip(expected);
                 assert!(
-                    pairs.map(|(a, b)| (a / b - 1.0).abs()).all(|off| off < 1e-12),
+                    pairs.map(|(a, b)| (a / b - 1.0).abs()).all(|off| within(off, 1e-12, RoundOff)),
                     "{found:?} {expected:?}"
                 );
             };
@@ -222,7 +224,7 @@ mod tests {
                         let difference = (plus[row] - minus[row]) / (2.0 * h);
                         let scale = answer.forces.normal * [1e5, 1.0, 1.0, 1.0, 1e5, 1e5][input];
                         assert!(
-                            (exact - difference).abs() < 1e-5 * (exact.abs() + scale),
+                            within((exact - difference).abs(), 1e-5 * (exact.abs() + scale), Reference),
                             "{law:?} {bristle:?} row {row}, input {input}: {exact} {difference}"
                         );
                     }

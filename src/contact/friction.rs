@@ -173,16 +173,17 @@ impl FrictionCoefficient for Hyperbolic {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bounds::{Origin::*, within};
 
     #[test]
     fn exponential_runs_from_the_static_to_the_high_speed_limit() {
         let law = Exponential { mu0: 0.3, mu1: 0.2, alpha: 4.0 };
         assert_eq!(law.mu(0.0, 0.0).value, 0.5);
-        assert!((law.mu(50.0, 0.0).value - 0.3).abs() < 1e-15);
+        assert!(within((law.mu(50.0, 0.0).value - 0.3).abs(), 1e-15, RoundOff));
         let (slow, h) = (law.mu(0.25, 0.0), 1e-6);
-        assert!((slow.value - (0.3 + 0.2 * (-1.0f64).exp())).abs() < 1e-15);
+        assert!(within((slow.value - (0.3 + 0.2 * (-1.0f64).exp())).abs(), 1e-15, RoundOff));
         let difference = (law.mu(0.25 + h, 0.0).value - law.mu(0.25 - h, 0.0).value) / (2.0 * h);
-        assert!((slow.by_speed - difference).abs() < 1e-9);
+        assert!(within((slow.by_speed - difference).abs(), 1e-9, Reference));
     }
 
     #[test]
@@ -197,9 +198,9 @@ mod tests {
             assert_eq!(law.mu(0.0, 0.0).value, at_rest);
             assert!(law.mu(0.0, 0.0).by_speed.is_finite());
             let (there, h) = (law.mu(0.03, 0.0), 1e-7);
-            assert!((there.value - moving).abs() < 1e-14, "{law:?}");
+            assert!(within((there.value - moving).abs(), 1e-14, RoundOff), "{law:?}");
             let slope = (law.mu(0.03 + h, 0.0).value - law.mu(0.03 - h, 0.0).value) / (2.0 * h);
-            assert!((there.by_speed - slope).abs() < 1e-6, "{law:?}");
+            assert!(within((there.by_speed - slope).abs(), 1e-6, Reference), "{law:?}");
         }
     }
 }

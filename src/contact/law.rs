@@ -114,6 +114,7 @@ impl ContactLaw for SlidingLaw {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bounds::{Origin::*, within};
     use crate::contact::{Coulomb, Exponential, FrictionTable};
 
     fn motion(penetration: f64, penetration_rate: f64, v1: f64, v2: f64) -> ContactMotion {
@@ -150,7 +151,7 @@ mod tests {
                 let difference = (plus[row] - minus[row]) / (2.0 * h);
                 let tolerance = 1e-7 * (exact.abs() + size / scale[input.min(2)]);
                 assert!(
-                    (exact - difference).abs() < tolerance,
+                    within((exact - difference).abs(), tolerance, Reference),
                     "row {row}, input {input}: {exact} {difference}"
                 );
             }
@@ -191,15 +192,18 @@ mod tests {
         let normal = NormalLaw::linear(1e6);
         let law = SlidingLaw::new(normal, Coulomb { mu0: 0.5 }, 0.0);
         let (forces, tangent) = law.respond(&motion(1e-5, 0.0, 0.3, 0.4), 2.0);
-        assert!((forces.normal - 20.0).abs() < 1e-12);
-        assert!((forces.friction[0] - 6.0).abs() < 1e-12 && (forces.friction[1] - 8.0).abs() < 1e-12);
+        assert!(within((forces.normal - 20.0).abs(), 1e-12, RoundOff));
+        assert!(
+            within((forces.friction[0] - 6.0).abs(), 1e-12, RoundOff)
+                && within((forces.friction[1] - 8.0).abs(), 1e-12, RoundOff)
+        );
         // Coulomb friction only turns: no slope along the slip.
         let along = tangent.by_slip_velocity[1][0] * 0.3 + tangent.by_slip_velocity[1][1] * 0.4;
-        assert!(along.abs() < 1e-12);
+        assert!(within(along.abs(), 1e-12, RoundOff));
         assert_eq!(law.respond(&motion(1e-5, 0.0, 0.0, 0.0), 2.0).0.friction, [0.0; 2]);
         let smooth = SlidingLaw { regularisation: 1e-3, ..law };
         let slope = smooth.respond(&motion(1e-5, 0.0, 0.0, 0.0), 2.0).1.by_slip_velocity[1][0];
-        assert!((slope - 0.5 * 20.0 / 1e-3).abs() < 1e-6);
+        assert!(within((slope - 0.5 * 20.0 / 1e-3).abs(), 1e-6, RoundOff));
     }
 
     #[test]
@@ -212,10 +216,13 @@ mod tests {
         for v in [0.5, 0.0, -0.5] {
             let (forces, tangent) = law.respond(&motion(1e-5, 0.0, v, 0.0), 1.0);
             let mu = falling.mu(v.abs(), 0.0);
-            assert!((forces.friction[0] + 10.0 * mu.value).abs() < 1e-14 && forces.friction[1] == 0.0);
+            assert!(
+                within((forces.friction[0] + 10.0 * mu.value).abs(), 1e-14, RoundOff)
+                    && forces.friction[1] == 0.0
+            );
             // At rest, where −μ(|v|) N has its corner, the mean of both sides.
             let slope = -10.0 * mu.by_speed * if v == 0.0 { 0.0 } else { v.signum() };
-            assert!((tangent.by_slip_velocity[1][0] - slope).abs() < 1e-14);
+            assert!(within((tangent.by_slip_velocity[1][0] - slope).abs(), 1e-14, RoundOff));
         }
     }
 

@@ -67,6 +67,7 @@ pub fn place(nodes: &mut [[f64; 3]], placement: &BodyPlacement<'_>) -> Result<()
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bounds::{Origin::*, within};
 
     /// A square in the plane y = 0 on one corner, and a plate of 2 × 2 m at z = −3.
     fn bodies() -> Vec<[f64; 3]> {
@@ -89,7 +90,9 @@ mod tests {
         let mut nodes = bodies();
         place(&mut nodes, &own).unwrap();
         // Ten times the rounding of coordinates up to 3.
-        let near = |a: [f64; 3], b: [f64; 3]| (0..3).all(|k| (a[k] - b[k]).abs() < 30.0 * f64::EPSILON);
+        let near = |a: [f64; 3], b: [f64; 3]| {
+            (0..3).all(|k| within((a[k] - b[k]).abs(), 30.0 * f64::EPSILON, RoundOff))
+        };
         assert!(near(nodes[0], [0.3, -0.4, -2.9]));
         // From the lowest corner to the upper one: (0, 2) turned by θ about y.
         assert!(near(nodes[2], [0.3 + 2.0 * 0.1f64.sin(), -0.4, -2.9 + 2.0 * 0.1f64.cos()]));

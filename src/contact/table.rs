@@ -132,6 +132,7 @@ fn check_axis(faults: &mut Faults, place: &str, axis: &[f64]) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bounds::{Origin::*, within};
 
     fn falling() -> FrictionTable {
         let values = vec![vec![0.6, 0.5, 0.42, 0.4], vec![0.5, 0.45, 0.41, 0.41]];
@@ -141,8 +142,8 @@ mod tests {
     #[test]
     fn goes_through_its_values_without_overshoot_and_is_constant_beyond() {
         let table = falling();
-        assert!((table.mu(0.5, 1e5).value - 0.5).abs() < 1e-15);
-        assert!((table.mu(0.5, 5.5e5).value - 0.475).abs() < 1e-15);
+        assert!(within((table.mu(0.5, 1e5).value - 0.5).abs(), 1e-15, RoundOff));
+        assert!(within((table.mu(0.5, 5.5e5).value - 0.475).abs(), 1e-15, RoundOff));
         assert_eq!(table.mu(9.0, 2e6), Coefficient { value: 0.41, by_speed: 0.0, by_pressure: 0.0 });
         let mut last = f64::INFINITY;
         for k in 0..=300 {
@@ -160,7 +161,10 @@ mod tests {
             let (h, q) = (1e-6, 1.0);
             let by_speed = (table.mu(v + h, p).value - table.mu(v - h, p).value) / (2.0 * h);
             let by_pressure = (table.mu(v, p + q).value - table.mu(v, p - q).value) / (2.0 * q);
-            assert!((mu.by_speed - by_speed).abs() < 1e-8 && (mu.by_pressure - by_pressure).abs() < 1e-13);
+            assert!(
+                within((mu.by_speed - by_speed).abs(), 1e-8, Reference)
+                    && within((mu.by_pressure - by_pressure).abs(), 1e-13, Reference)
+            );
         }
     }
 

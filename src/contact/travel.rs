@@ -62,15 +62,16 @@ pub fn mean_edge<'a>(nodes: &[[f64; 3]], faces: impl IntoIterator<Item = &'a Cel
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bounds::{Origin::*, within};
 
     #[test]
     fn stations_reach_over_the_way_and_one_is_where_the_pair_stands() {
         let nodes = [[0.0, 0.0, 0.0], [0.3, 0.0, 0.0], [0.0, 0.4, 0.0], [9.0; 3]];
         let faces = [Cell::triangle([0, 1, 2])];
         let edge = mean_edge(&nodes, &faces);
-        assert!((edge - 0.4).abs() < 1e-15);
+        assert!(within((edge - 0.4).abs(), 1e-15, RoundOff));
         let stations = Stations::new([-0.3, 0.5], edge, |_| Some(Vec::new())).unwrap();
-        let near = |a: f64, b: f64| (a - b).abs() < 1e-15;
+        let near = |a: f64, b: f64| within((a - b).abs(), 1e-15, RoundOff);
         assert!(near(stations.first, -0.4) && near(stations.spacing, 0.2) && stations.points.len() == 6);
         let still = Stations::new([0.0, 0.0], edge, |_| Some(Vec::new())).unwrap();
         assert_eq!((still.first, still.points.len()), (0.0, 2));

@@ -1,8 +1,8 @@
 use super::samples::*;
 use super::*;
+use crate::bounds::{Origin::*, within};
 use crate::contact::{Coulomb, NormalLaw, SlidingLaw};
 use crate::error::{Error, Result};
-use crate::linalg::bounds::within;
 use crate::linalg::random::Random;
 use crate::linalg::{SparseMatrix, SparseVector, extended};
 use crate::system::{Closing, Damping, Prestress, Structure, System};
@@ -22,10 +22,10 @@ fn two_dof_equilibrium_is_that_of_its_two_equations() {
     let det = a * d - b * c;
     let exact = [b / det, -a / det];
     for (found, exact) in steady.displacement.iter().zip(exact) {
-        assert!((found - exact).abs() < 1e-14);
+        assert!(within((found - exact).abs(), 1e-14, RoundOff));
     }
-    assert!((steady.points[0].forces.normal + k_n * exact[1]).abs() < 1e-14);
-    assert!(steady.residual < 1e-14);
+    assert!(within((steady.points[0].forces.normal + k_n * exact[1]).abs(), 1e-14, RoundOff));
+    assert!(within(steady.residual, 1e-14, RoundOff));
 }
 
 #[test]
@@ -35,8 +35,8 @@ fn random_systems_carry_their_load_and_balance() {
         let system = random_system(40 + 7 * seed as usize, 3 + seed as usize, 5.0 + seed as f64, seed);
         let steady = solve(&system).unwrap();
         let total: f64 = steady.points.iter().map(|p| p.forces.normal).sum();
-        assert!((total - (5.0 + seed as f64)).abs() < 1e-11, "seed {seed}: ΣN = {total}");
-        assert!(steady.residual < 1e-13, "seed {seed}: {:.1e}", steady.residual);
+        assert!(within((total - (5.0 + seed as f64)).abs(), 1e-11, RoundOff), "seed {seed}: ΣN = {total}");
+        assert!(within(steady.residual, 1e-13, RoundOff), "seed {seed}: {:.1e}", steady.residual);
         for state in &steady.points {
             assert_eq!(state.forces.normal > 0.0, state.penetration > 0.0);
             open += usize::from(!state.closed());
@@ -64,9 +64,9 @@ fn cubic_penalty_on_rigid_ground_has_its_closed_form() {
     };
     let steady = solve(&system).unwrap();
     // 500 · 2e-3 + 1e9 · 8e-9 = 9; u = −9/40; approach = δ + gap − u.
-    assert!((steady.points[0].penetration - 2e-3).abs() < 1e-14);
-    assert!((steady.displacement[0] + 9.0 / 40.0).abs() < 1e-14);
-    assert!((steady.approach[0] - (2e-3 + 0.3 + 9.0 / 40.0)).abs() < 1e-13);
+    assert!(within((steady.points[0].penetration - 2e-3).abs(), 1e-14, RoundOff));
+    assert!(within((steady.displacement[0] + 9.0 / 40.0).abs(), 1e-14, RoundOff));
+    assert!(within((steady.approach[0] - (2e-3 + 0.3 + 9.0 / 40.0)).abs(), 1e-13, RoundOff));
 }
 
 /// A body of two masses in y that only the contact holds, pressed by its weight; x held by a spring.
@@ -92,7 +92,7 @@ fn a_body_held_only_by_the_contact_finds_its_rigid_position() {
     let steady = solve(&free_body(true)).unwrap();
     let exact = [-2.0 / 100.0, -2.0 / 100.0 - 2.0 / 5.0, 0.5 * 2.0 / 7.0];
     for (found, exact) in steady.displacement.iter().zip(exact) {
-        assert!((found - exact).abs() < 1e-13, "{found} {exact}");
+        assert!(within((found - exact).abs(), 1e-13, RoundOff), "{found} {exact}");
     }
 }
 
@@ -182,9 +182,9 @@ fn prestress_is_carried_to_its_fixed_point() {
     };
     let steady = solve(&system).unwrap();
     let exact = (-100.0 + (100.0f64 * 100.0 + 4.0 * 80.0 * 12.0).sqrt()) / 160.0;
-    assert!((steady.displacement[0] - exact).abs() < 1e-13);
+    assert!(within((steady.displacement[0] - exact).abs(), 1e-13, RoundOff));
     let tangent = tangent_stiffness(&system, &steady.displacement).unwrap();
-    assert!((tangent.val()[0] - (70.0 + 80.0 * exact)).abs() < 1e-10);
+    assert!(within((tangent.val()[0] - (70.0 + 80.0 * exact)).abs(), 1e-10, RoundOff));
 
     /// Takes away what structure and contact have.
     #[derive(Debug)]
@@ -232,7 +232,11 @@ fn linearised_contact_is_the_derivative_of_the_residual() {
         let size = exact.iter().fold(0.0f64, |m, v| m.max(v.abs()));
         for i in 0..n {
             let difference = (plus[i] - minus[i]) / (2.0 * h);
-            assert!((difference - exact[i]).abs() < 1e-7 * size, "dof {i}: {difference} {}", exact[i]);
+            assert!(
+                within((difference - exact[i]).abs(), 1e-7 * size, Reference),
+                "dof {i}: {difference} {}",
+                exact[i]
+            );
         }
     }
 }
@@ -269,8 +273,15 @@ fn a_neighbour_is_found_without_a_new_factorisation() {
     let (found, exact) =
         (nearby.solve(&other).unwrap(), solve_steady(&other, &SteadyOptions::default(), &()).unwrap());
     let scale = exact.displacement.iter().fold(0.0, |m: f64, u| m.max(u.abs()));
-    assert!(found.displacement.iter().zip(&exact.displacement).all(|(a, b)| (a - b).abs() < 1e-12 * scale));
-    assert!((found.approach[0] - exact.approach[0]).abs() < 1e-12 * scale && found.residual < 1e-14);
+    assert!(found.displacement.iter().zip(&exact.displacement).all(|(a, b)| within(
+        (a - b).abs(),
+        1e-12 * scale,
+        Tolerance
+    )));
+    assert!(
+        within((found.approach[0] - exact.approach[0]).abs(), 1e-12 * scale, Tolerance)
+            && within(found.residual, 1e-14, Tolerance)
+    );
     assert!(nearby.solve(&random_system(61, 5, 20.0, 11)).is_err());
 }
 
@@ -318,17 +329,14 @@ fn a_penalty_however_stiff_carries_the_load() {
     for closing in [Closing::Load(8.0), Closing::Approach(reference.approach[0])] {
         for stiffness in [1e15, 1e18, 1e22] {
             let (system, stiff) = with(stiffness, closing);
-            assert!(stiff.residual < 1e-13, "{stiffness:e}: {:.1e}", stiff.residual);
+            assert!(within(stiff.residual, 1e-13, RoundOff), "{stiffness:e}: {:.1e}", stiff.residual);
             let (exact, moved) = by_elimination(&system, &stiff);
             let forces = stiff.points.iter().filter(|p| p.closed()).map(|p| p.forces.normal);
             for ((found, exact), moved) in
                 stiff.displacement.iter().copied().chain(forces).zip(exact).zip(moved)
             {
                 let off = (found - exact).abs();
-                assert!(
-                    within(off, 10.0 * moved, "rounding of the entries"),
-                    "{stiffness:e}: {found} {exact}"
-                );
+                assert!(within(off, 10.0 * moved, RoundOff), "{stiffness:e}: {found} {exact}");
             }
             assert!(stiff.points.iter().zip(&reference.points).all(|(a, b)| a.closed() == b.closed()));
         }

@@ -246,6 +246,7 @@ pub fn arrows(contact: &Contact, regions: &Regions, model: &Model, points: &[Con
 
 #[cfg(test)]
 mod tests {
+    use crate::bounds::{Origin::*, within};
     use crate::case::Case;
     use crate::job::Prepared;
 
@@ -267,7 +268,7 @@ mod tests {
         };
         let near = |found: Result<f64, String>, right: f64| {
             let found = found.unwrap();
-            assert!((found / right - 1.0).abs() < 1e-14, "{found} {right}");
+            assert!(within((found / right - 1.0).abs(), 1e-14, RoundOff), "{found} {right}");
         };
         near(weights("plate", "area"), 0.06);
         near(weights("plate_edge_y_min", "length"), 0.3);

@@ -256,6 +256,7 @@ fn form(basis: &Mat<f64>, x: &SparseVector) -> SparseVector {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bounds::{Origin::*, within};
     use crate::equilibrium::samples::random_system;
     use crate::equilibrium::{SteadyOptions, solve_steady};
     use crate::modal::samples::dense_modes;
@@ -280,18 +281,22 @@ mod tests {
                 })
             };
             let squares: Vec<f64> = (0..m).map(|i| reduced.system.structure.stiffness[(i, i)]).collect();
-            assert!(off(&reduced.inertia, &|_| 1.0) < 1e-9);
+            assert!(within(off(&reduced.inertia, &|_| 1.0), 1e-9, RoundOff));
             let elastic = times(&system.structure.stiffness, reduced.basis.as_ref());
-            assert!(off(&elastic, &|i| squares[i]) < 1e-9);
+            assert!(within(off(&elastic, &|i| squares[i]), 1e-9, RoundOff));
             // Its steady sliding, solved again.
             let small = solve_steady(&reduced.system, &SteadyOptions::default(), &()).unwrap();
             for (a, b) in small.points.iter().zip(&steady.points) {
                 let (a, b) = (a.forces.normal, b.forces.normal);
-                assert!((a - b).abs() < 1e-9, "{a} {b}");
+                assert!(within((a - b).abs(), 1e-9, RoundOff), "{a} {b}");
             }
             let back = reduced.expand(&small.displacement);
             let size = steady.displacement.iter().fold(0.0f64, |s, x| s.max(x.abs()));
-            assert!(back.iter().zip(&steady.displacement).all(|(a, b)| (a - b).abs() < 1e-9 * size));
+            assert!(back.iter().zip(&steady.displacement).all(|(a, b)| within(
+                (a - b).abs(),
+                1e-9 * size,
+                RoundOff
+            )));
             // What a static push does at its own place.
             let force = reduced.form(&push);
             let mut answer = Mat::<f64>::zeros(40, 1);
@@ -299,7 +304,7 @@ mod tests {
             factorize(&system.structure.stiffness).unwrap().solve_in_place(answer.as_mut());
             let static_small: f64 = force.iter().map(|(i, f)| f * f / squares[i]).sum();
             let exact = push.dot(answer.col_as_slice(0));
-            assert!((static_small / exact - 1.0).abs() < 1e-9, "{static_small} {exact}");
+            assert!(within((static_small / exact - 1.0).abs(), 1e-9, RoundOff), "{static_small} {exact}");
         }
     }
 }

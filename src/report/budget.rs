@@ -93,6 +93,7 @@ fn drawn(modes: &[&ComplexMode]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bounds::{Origin::*, within};
     use crate::job::sample;
 
     #[test]
@@ -102,7 +103,11 @@ mod tests {
             let [low, high] = span(&mode.growth);
             assert!(low <= 0.0 && high >= 0.0);
             // The terms are computed apart: their sum is σ but for round-off of λ.
-            assert!((low + high - mode.growth_rate()).abs() < 1e-10 * mode.eigenvalue.norm());
+            assert!(within(
+                (low + high - mode.growth_rate()).abs(),
+                1e-10 * mode.eigenvalue.norm(),
+                RoundOff
+            ));
         }
         let svg = picture(&results).unwrap().svg;
         assert!(["332 Hz", "σ +13.0", "mode coupling"].iter().all(|label| svg.contains(label)));

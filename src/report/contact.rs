@@ -175,6 +175,7 @@ fn drawn(marks: &[Mark], axis: &str, words: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bounds::{Origin::*, within};
     use crate::job::sample;
 
     #[test]
@@ -189,7 +190,7 @@ mod tests {
         steady.state.points.push(far);
         let (marks, axis) = marks(&near_closed(steady, "rim"), Some([1.0, 0.0, 0.0]));
         assert_eq!((marks.len(), axis), (14, "y"));
-        assert!((marks.iter().map(|m| m.force).sum::<f64>() - 20.0).abs() < 1e-9);
+        assert!(within((marks.iter().map(|m| m.force).sum::<f64>() - 20.0).abs(), 1e-9, RoundOff));
         assert_eq!(marks.iter().filter(|m| m.ahead).count(), 7);
         assert!(table(steady).is_none());
         let svg = picture(&results).unwrap().svg;

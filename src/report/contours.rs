@@ -106,6 +106,7 @@ fn turns_right(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bounds::{Origin::*, within};
 
     /// The unit square in 2 n² triangles.
     fn square(n: usize) -> (Vec<[f64; 2]>, Vec<[usize; 3]>) {
@@ -135,9 +136,9 @@ mod tests {
         // x ≥ 0.5 − 0.3 y on the unit square: 1 − ∫(0.5 − 0.3 y) dy = 0.65.
         let region = at_least(&points, &triangles, &values, 0.5);
         assert_eq!(region.loops.len(), 1);
-        assert!((area(&region) - 0.65).abs() < 1e-12);
+        assert!(within((area(&region) - 0.65).abs(), 1e-12, RoundOff));
         let length: f64 = region.level_lines.iter().map(|[a, b]| (a[0] - b[0]).hypot(a[1] - b[1])).sum();
-        assert!((length - 1.09_f64.sqrt()).abs() < 1e-12);
+        assert!(within((length - 1.09_f64.sqrt()).abs(), 1e-12, RoundOff));
     }
 
     #[test]
@@ -148,8 +149,12 @@ mod tests {
         assert_eq!(region.loops.len(), 2);
         let exact = 1.0 - std::f64::consts::PI * 0.09;
         // The chords of a circle cut off about h²/8 of its length: (1/60)² · 2π · 0.3 / 8 = 6.5e-5 at most.
-        assert!((area(&region) - exact).abs() < 2e-4);
+        assert!(within((area(&region) - exact).abs(), 2e-4, Discretisation));
         assert!(at_least(&points, &triangles, &values, 2.0).loops.is_empty());
-        assert!((area(&at_least(&points, &triangles, &values, f64::NEG_INFINITY)) - 1.0).abs() < 1e-12);
+        assert!(within(
+            (area(&at_least(&points, &triangles, &values, f64::NEG_INFINITY)) - 1.0).abs(),
+            1e-12,
+            RoundOff
+        ));
     }
 }

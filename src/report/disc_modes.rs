@@ -197,6 +197,7 @@ fn draw_legend(sheet: &mut Sheet, top: f64, scale: Option<f64>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bounds::{Origin::*, within};
     use crate::job::sample;
 
     #[test]
@@ -229,6 +230,6 @@ mod tests {
         let radii: Vec<f64> = lines.iter().map(|[a, _]| (a[0] - centre[0]).hypot(a[1] - centre[1])).collect();
         let mean = radii.iter().sum::<f64>() / radii.len() as f64;
         assert!(mean > 0.03 && mean < 0.07, "{mean}");
-        assert!(radii.iter().all(|r| (r - mean).abs() < 0.003), "{radii:?}");
+        assert!(radii.iter().all(|r| within((r - mean).abs(), 0.003, Discretisation)), "{radii:?}");
     }
 }

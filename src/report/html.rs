@@ -226,6 +226,7 @@ pub(super) fn escape(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::{PageLayout, STYLE, described, prose};
+    use crate::bounds::{Origin::*, within};
     use std::collections::BTreeMap;
 
     /// Relative luminance of `#rrggbb` (WCAG 2.2).
@@ -265,7 +266,7 @@ mod tests {
 
     #[test]
     fn text_stands_out_in_light_dark_and_on_paper() {
-        assert!((contrast("#ffffff", "#000000") - 21.0).abs() < 1e-9);
+        assert!(within((contrast("#ffffff", "#000000") - 21.0).abs(), 1e-9, RoundOff));
         let blocks: Vec<&str> =
             STYLE.split(":root {").skip(1).map(|b| b.split('}').next().unwrap()).collect();
         assert_eq!(blocks.len(), 3);

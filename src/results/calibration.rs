@@ -504,6 +504,7 @@ pub(super) fn write_calibrated(dir: &Path, result: &CalibrationResult) -> Result
 mod tests {
     use super::super::{RunResults, summary_json, write_files};
     use super::{CalibratedResponse, CalibrationResult};
+    use crate::bounds::{Origin::*, within};
     use crate::calibration::Chance;
     use crate::job::sample;
     use serde_json::json;
@@ -529,10 +530,22 @@ mod tests {
         let [first, second] = &record.data[..] else { panic!("two frequencies") };
         let error = |hz: Option<f64>, measured: f64| 100.0 * (hz.unwrap() / measured - 1.0);
         let largest = [first, second].map(|d| error(d.after_hz, d.measured_hz).abs());
-        assert!((json["largest_error_percent"].as_f64().unwrap() - largest[0].max(largest[1])).abs() < 1e-9);
+        assert!(within(
+            (json["largest_error_percent"].as_f64().unwrap() - largest[0].max(largest[1])).abs(),
+            1e-9,
+            RoundOff
+        ));
         let left_out = error(first.left_out_hz, first.measured_hz);
-        assert!((json["data"][0]["left_out_percent"].as_f64().unwrap() - left_out).abs() < 1e-9);
-        assert!((json["chance"]["probability_by_largest_error"].as_f64().unwrap() - 0.05).abs() < 1e-12);
+        assert!(within(
+            (json["data"][0]["left_out_percent"].as_f64().unwrap() - left_out).abs(),
+            1e-9,
+            RoundOff
+        ));
+        assert!(within(
+            (json["chance"]["probability_by_largest_error"].as_f64().unwrap() - 0.05).abs(),
+            1e-12,
+            RoundOff
+        ));
         let trials = record.calibration.trials.as_ref().unwrap();
         let least = *trials.covered.iter().min().unwrap() as f64 / trials.count as f64;
         assert_eq!(json["trials"]["least_coverage"], least);
@@ -543,8 +556,16 @@ mod tests {
         assert_eq!(json["assignments"][0]["modes"][1], "disc (4, 0)");
         let response = &json["responses"][0];
         let apart = 1.25f64.ln() / 3f64.sqrt();
-        assert!((response["left_out_deviations"].as_f64().unwrap() - 10.0 * apart).abs() < 1e-12);
-        assert!((response["left_out_db"].as_f64().unwrap() - 8.685889638 * apart).abs() < 1e-8);
+        assert!(within(
+            (response["left_out_deviations"].as_f64().unwrap() - 10.0 * apart).abs(),
+            1e-12,
+            RoundOff
+        ));
+        assert!(within(
+            (response["left_out_db"].as_f64().unwrap() - 8.685889638 * apart).abs(),
+            1e-8,
+            Reference
+        ));
         let dir = tempfile::tempdir().unwrap();
         write_files(dir.path(), &results).unwrap();
         let table = std::fs::read_to_string(dir.path().join("calibration.csv")).unwrap();

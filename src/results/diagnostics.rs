@@ -213,6 +213,7 @@ impl ContactWatch {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bounds::{Origin::*, within};
 
     #[test]
     fn states_are_counted_in_columns() {
@@ -223,7 +224,11 @@ mod tests {
             watch.take([late, swinging[1], swinging[2]]);
         }
         let history = watch.finish();
-        assert!(history.points == 2 && history.counts.len() == 667 && (history.column - 3e-5).abs() < 1e-18);
+        assert!(
+            history.points == 2
+                && history.counts.len() == 667
+                && within((history.column - 3e-5).abs(), 1e-18, RoundOff)
+        );
         let sum = history.counts.iter().fold([0; 4], |sum, c| [0, 1, 2, 3].map(|k| sum[k] + c[k]));
         assert_eq!(sum, [1000, 1000, 500, 1500]);
         assert!(history.counts[..666].iter().all(|c| c.iter().sum::<u64>() == 6));

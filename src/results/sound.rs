@@ -155,6 +155,7 @@ pub(super) fn write_sound(dir: &Path, sound: &Sound) -> crate::error::Result<()>
 
 #[cfg(test)]
 mod tests {
+    use crate::bounds::{Origin::*, within};
     use crate::job::sample;
     use crate::results::TransientResult;
     use crate::sound::a_weighting;
@@ -165,20 +166,30 @@ mod tests {
         let sound = results.get::<TransientResult>().unwrap().sound.as_ref().unwrap();
         let whole: f64 = (0..sound.lines()).map(|k| sound.power(k)).sum();
         let [level, weighted] = sound.power_levels();
-        assert!((level - 10.0 * (whole / 1e-12).log10()).abs() < 1e-9);
+        assert!(within((level - 10.0 * (whole / 1e-12).log10()).abs(), 1e-9, RoundOff));
         // The weight of the whole is the mean of that of the lines, by their power.
         let share = |k: usize| sound.power(k) / whole * a_weighting(sound.frequency_hz(k)).powi(2);
         let weight = 10.0 * (1..sound.lines()).map(share).sum::<f64>().log10();
-        assert!((weighted - level - weight).abs() < 0.01, "{weighted} {level} {weight}");
+        assert!(
+            within((weighted - level - weight).abs(), 0.01, Discretisation),
+            "{weighted} {level} {weight}"
+        );
         // A watt makes 120 dB, and 109.1 dB in the mean at 1 m: ρ₀c/(4π · 400) of it.
-        assert!((sound.mean_levels(1.0)[0] - level + 10.85).abs() < 0.01);
-        assert!((sound.mean_levels(2.0)[1] - sound.mean_levels(1.0)[1] + 6.02).abs() < 0.01);
+        assert!(within((sound.mean_levels(1.0)[0] - level + 10.85).abs(), 0.01, Reference));
+        assert!(within(
+            (sound.mean_levels(2.0)[1] - sound.mean_levels(1.0)[1] + 6.02).abs(),
+            0.01,
+            Reference
+        ));
         let dir = tempfile::tempdir().unwrap();
         super::write_sound(dir.path(), sound).unwrap();
         let wav = std::fs::read(dir.path().join("sound_axis.wav")).unwrap();
         let record = &sound.microphones[0].recording;
         let peak = record.pressure.iter().fold(0.0, |most: f64, p| most.max(p.abs()));
-        assert!((record.full_scale() - peak / 0.9).abs() < 1e-12 * peak, "the peak is 0.9 of it");
+        assert!(
+            within((record.full_scale() - peak / 0.9).abs(), 1e-12 * peak, RoundOff),
+            "the peak is 0.9 of it"
+        );
         let scale = format!("full scale is {:.6e} Pa", record.full_scale());
         assert!(wav.windows(scale.len()).any(|w| w == scale.as_bytes()));
         let table = super::spectrum(sound).to_csv();
@@ -189,6 +200,10 @@ mod tests {
         assert_eq!(files, ["sound_axis.wav", "sound_side.wav"]);
         assert!(files.iter().all(|file| dir.path().join(file).exists()));
         let disc = sound.plates[0].1.iter().sum::<f64>();
-        assert!((summary["plates"][0]["share"].as_f64().unwrap() - disc / whole).abs() < 1e-9);
+        assert!(within(
+            (summary["plates"][0]["share"].as_f64().unwrap() - disc / whole).abs(),
+            1e-9,
+            RoundOff
+        ));
     }
 }

@@ -171,6 +171,7 @@ impl Geometry {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bounds::{Origin::*, within};
     use crate::job::sample;
     use crate::results::ComplexResult;
     use crate::results::MeasuredComparison;
@@ -201,10 +202,13 @@ mod tests {
         assert_eq!(unstable.count(), json["cea"]["unstable"].as_u64().unwrap() as usize);
         // The pairs' forces are the sums over their points, which carry 20 N.
         let pair = &json["steady_sliding"]["pairs"][0];
-        assert!((pair["normal_force_n"].as_f64().unwrap() - 20.0).abs() < 1e-9);
+        assert!(within((pair["normal_force_n"].as_f64().unwrap() - 20.0).abs(), 1e-9, Tolerance));
         let points = &results.get::<SteadyResult>().unwrap().state.points;
         let friction: f64 = points.iter().map(|point| point.forces.friction[0]).sum();
-        assert!((pair["friction_force_n"][0].as_f64().unwrap() - friction).abs() < 1e-12 && friction > 12.0);
+        assert!(
+            within((pair["friction_force_n"][0].as_f64().unwrap() - friction).abs(), 1e-12, RoundOff)
+                && friction > 12.0
+        );
         assert_eq!(json["case"]["contact"]["rim"]["friction"]["mu0"], 0.6);
         assert_eq!(json["timings"][1]["phase"], results.timings[1].0.as_str());
     }
@@ -217,9 +221,13 @@ mod tests {
         let computed = results.all::<NamedModes>()[0].modes.frequency_hz(k)
             * results.all::<MeasuredComparison>()[0].frequency_scale;
         // The product in another order.
-        assert!((row["computed_hz"].as_f64().unwrap() / computed - 1.0).abs() < 1e-15);
+        assert!(within(
+            (row["computed_hz"].as_f64().unwrap() / computed - 1.0).abs(),
+            20.0 * f64::EPSILON,
+            RoundOff
+        ));
         let percent = row["difference_percent"].as_f64().unwrap();
-        assert!((percent - 100.0 * (computed / 936.0 - 1.0)).abs() < 1e-12);
+        assert!(within((percent - 100.0 * (computed / 936.0 - 1.0)).abs(), 1e-12, RoundOff));
     }
 
     #[test]

@@ -73,6 +73,7 @@ fn modes(nodes: &[[f64; 3]], set: &NamedModes) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bounds::{Origin::*, within};
     use crate::job::sample;
     use crate::measured::uff::{Unstated, read};
 
@@ -96,10 +97,13 @@ mod tests {
             assert_eq!(found.response.direction, [0.0; 3], "along no axis");
             let place = set.points[found.response.point].position;
             // The format has six digits of a place.
-            let alike = |(a, b): (&f64, &f64)| (a - b).abs() <= 5e-6 * b.abs();
+            let alike = |(a, b): (&f64, &f64)| within((a - b).abs(), 5e-6 * b.abs(), Reference);
             assert!(place.iter().zip(&exact.at.position).all(alike), "{place:?}");
-            let near =
-                found.values.iter().zip(&exact.values).all(|(a, b)| (a - b).norm() <= 1e-12 * b.norm());
+            let near = found
+                .values
+                .iter()
+                .zip(&exact.values)
+                .all(|(a, b)| within((a - b).norm(), 1e-12 * b.norm(), Reference));
             assert!(near);
         }
         let binary = functions(&FrfResult { binary: true, ..frf.clone() });
@@ -120,7 +124,7 @@ mod tests {
             read("t", &functions(&frf), Unstated { unit: 1e-3, quantity: None }).unwrap().into_set();
         assert_eq!(set.frfs[0].frequencies_hz.len(), count - 1);
         let first = frf.responses[0].values[0];
-        assert!((set.frfs[0].values[0] - first).norm() <= 1e-12 * first.norm());
+        assert!(within((set.frfs[0].values[0] - first).norm(), 1e-12 * first.norm(), Reference));
         let (set, _) = read(
             "b",
             &functions(&FrfResult { binary: true, ..frf }),
@@ -141,14 +145,14 @@ mod tests {
         assert!(warnings.is_empty() && back.modes.len() == set.modes.len(), "{warnings:?}");
         assert_eq!(back.points.len(), results.geometry.nodes.len());
         for (k, mode) in back.modes.iter().enumerate() {
-            assert!((mode.frequency_hz / set.modes.frequency_hz(k) - 1.0).abs() < 1e-5);
+            assert!(within((mode.frequency_hz / set.modes.frequency_hz(k) - 1.0).abs(), 1e-5, Reference));
             let damping = mode.damping_ratio.unwrap();
-            assert!((damping / set.damping_ratio[k] - 1.0).abs() < 1e-5, "{damping}");
+            assert!(within((damping / set.damping_ratio[k] - 1.0).abs(), 1e-5, Reference), "{damping}");
             let shape = mode.shape.as_ref().unwrap();
             for (dof, value) in back.dofs.iter().zip(shape) {
                 let node = back.points[dof.point].id as usize - 1;
                 let exact: f64 = (0..3).map(|a| dof.direction[a] * set.shape(k)[node][a]).sum();
-                assert!(value.im == 0.0 && (value.re - exact).abs() <= 1e-5 * exact.abs());
+                assert!(value.im == 0.0 && within((value.re - exact).abs(), 1e-5 * exact.abs(), Reference));
             }
         }
     }

@@ -338,6 +338,7 @@ fn scalar_columns() -> Vec<Column<ScalarRow>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bounds::{Origin::*, within};
 
     #[test]
     fn modes_and_samples_are_counted_where_they_were_found() {
@@ -377,7 +378,7 @@ mod tests {
         assert_eq!((first.unstable.count, first.unstable.of, first.mean_hz), (1, 4, 115.0));
         assert_eq!((second.unstable.count, second.unstable.of), (0, 2));
         assert_eq!(first.frequency_hz[1], 115.0);
-        assert!((first.deviation_hz - (500.0_f64 / 3.0).sqrt()).abs() < 1e-12);
+        assert!(within((first.deviation_hz - (500.0_f64 / 3.0).sqrt()).abs(), 1e-12, RoundOff));
         assert_eq!(result.growth_rates(), [-1.0, -1e-3, 1.0, 5.0]);
         // An error of 1e-6 of 2π 200 Hz is more than 1e-3 1/s.
         assert_eq!(result.undecided(), 1);

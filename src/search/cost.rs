@@ -69,10 +69,11 @@ fn loss(d: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::loss;
+    use crate::bounds::{Origin::*, within};
 
     #[test]
     fn small_differences_count_squared_and_large_ones_as_they_are() {
-        assert!((loss(0.1) - 0.01).abs() < 1e-5 && loss(0.0) == 0.0);
-        assert!((loss(2e6) / loss(1e6) - 2.0).abs() < 1e-5 && loss(f64::NAN) == loss(50.0));
+        assert!(within((loss(0.1) - 0.01).abs(), 1e-5, Theory) && loss(0.0) == 0.0);
+        assert!(within((loss(2e6) / loss(1e6) - 2.0).abs(), 1e-5, Theory) && loss(f64::NAN) == loss(50.0));
     }
 }

@@ -216,6 +216,7 @@ fn conjugate_dot([a, b]: [&[f64]; 2], [p, q]: [&[f64]; 2]) -> c64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bounds::{Origin::*, within};
 
     #[test]
     fn a_dot_conjugates_its_first_vector() {
@@ -226,7 +227,10 @@ mod tests {
             let (x, y) = (vector(1.3), vector(0.7));
             let expected: c64 = x.iter().zip(&y).map(|(x, y)| x.conj() * y).sum();
             let block = |x: &[c64]| Block::from_columns(n, &[x]);
-            assert!((block(&x).dot(0, &block(&y)) - expected).norm() <= 1e-14 * n as f64, "{n}");
+            assert!(
+                within((block(&x).dot(0, &block(&y)) - expected).norm(), 1e-14 * n as f64, RoundOff),
+                "{n}"
+            );
         }
     }
 }

@@ -79,6 +79,7 @@ mod tests {
     use super::super::complex_modes;
     use super::super::tests::{damped, dense_eigenvalues, dense_modes, nearest, steady};
     use super::*;
+    use crate::bounds::{Origin::*, within};
     use crate::equilibrium::samples::random_system;
     use crate::linalg::c64;
 
@@ -103,11 +104,17 @@ mod tests {
             for mode in &found.modes {
                 let exact = nearest(mode.eigenvalue, &exact);
                 let error = (mode.eigenvalue - exact).norm() / exact.norm();
-                assert!(error < bound && mode.accepted(), "seed {seed}: {error:.1e} {mode:?}");
+                assert!(
+                    within(error, bound, RoundOff) && mode.accepted(),
+                    "seed {seed}: {error:.1e} {mode:?}"
+                );
                 for (k, share) in &mode.participation {
                     let x = times(&system.structure.mass, real.shapes.subcols(*k, 1));
                     let amplitude: c64 = mode.right.iter().zip(x.col_as_slice(0)).map(|(r, x)| r * x).sum();
-                    assert!((amplitude.norm_sqr() - share).abs() < 1e-9, "seed {seed}: mode {k}");
+                    assert!(
+                        within((amplitude.norm_sqr() - share).abs(), 1e-9, RoundOff),
+                        "seed {seed}: mode {k}"
+                    );
                 }
             }
         }

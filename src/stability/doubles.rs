@@ -1,6 +1,7 @@
 //! Eigenvalues that are zero or double: their rounding is the root of that of the matrices.
 
 use super::{ComplexModes, Verdict, complex_modes};
+use crate::bounds::{Origin::*, least, within};
 use crate::equilibrium::samples::sparse;
 use crate::equilibrium::{SteadyOptions, solve_steady};
 use crate::linalg::random::Random;
@@ -74,10 +75,10 @@ fn nothing_grows_in_bodies_that_nothing_holds() {
             let undecided = mode.verdict() == Verdict::Undecided;
             assert!(!mode.unstable() && (k >= 2 * parts || undecided), "{seed}: {mode:?}");
             // Rounding of K: √ε of its scale.
-            assert!(mode.uncertainty < 1e-6 * TAU * top, "{seed}: {mode:?}");
+            assert!(within(mode.uncertainty, 1e-6 * TAU * top, RoundOff), "{seed}: {mode:?}");
             let hz = if k < 2 * parts { 0.0 } else { real.frequency_hz(k - parts) };
             // Equal parts are separated by a change of the projected problem, of which one Newton step leaves less than this.
-            assert!((mode.frequency_hz() - hz).abs() < 1e-9 * top, "{seed}: {mode:?}");
+            assert!(within((mode.frequency_hz() - hz).abs(), 1e-9 * top, Tolerance), "{seed}: {mode:?}");
         }
     }
 }
@@ -91,7 +92,8 @@ fn a_drift_is_zero_and_its_friction_decides_what_grows() {
         let values: Vec<f64> = found.iter().map(|mode| mode.eigenvalue.re).collect();
         let rate = -damping / mass;
         assert!(values.len() == 2 && values.contains(&0.0), "{values:?}");
-        assert!(values.iter().any(|v| (v - rate).abs() < 1e-13 * rate.abs()), "{values:?} {rate}");
+        let off = least(values.iter().map(|v| (v - rate).abs()));
+        assert!(within(off, 1e-13 * rate.abs(), RoundOff), "{values:?} {rate}");
         let grows = found.iter().filter(|mode| mode.unstable()).count();
         assert_eq!(grows, usize::from(rate > 0.0), "{found:?}");
     }
@@ -110,8 +112,14 @@ fn critical_damping_is_stable_within_its_stated_error() {
                 // The radius in which the two roots are: √(2δ).
                 let radius = omega * (2.0 * f64::abs(delta)).sqrt();
                 let off = (mode.eigenvalue + c64::new(omega, 0.0)).norm();
-                assert!(off <= 1.5 * radius + 10.0 * mode.uncertainty, "{n} {omega} {delta:e}: {mode:?}");
-                assert!(mode.uncertainty < 1e-4 * omega && mode.verdict() == Verdict::Stable, "{mode:?}");
+                assert!(
+                    within(off, 1.5 * radius + 10.0 * mode.uncertainty, Stated),
+                    "{n} {omega} {delta:e}: {mode:?}"
+                );
+                assert!(
+                    within(mode.uncertainty, 1e-4 * omega, Stated) && mode.verdict() == Verdict::Stable,
+                    "{mode:?}"
+                );
             }
         }
     }
@@ -142,7 +150,7 @@ fn at_the_onset_of_divergence_growth_is_undecided_and_beyond_it_unstable() {
         if delta > 1e-10 {
             let exact = (scale * delta).sqrt();
             let fastest = found.iter().map(|mode| mode.growth_rate()).fold(0.0, f64::max);
-            assert!((fastest / exact - 1.0).abs() < 1e-15 / delta, "{fastest:e} {exact:e}");
+            assert!(within((fastest / exact - 1.0).abs(), 1e-15 / delta, RoundOff), "{fastest:e} {exact:e}");
         }
     }
 }
@@ -183,7 +191,7 @@ fn neat_numbers_hit_no_shift() {
         let expected = spectrum.iter().filter(|z| z.im > -1e-5 * size && z.norm() > 1e-3 * size);
         for z in expected.filter(|z| z.norm() < 0.999 * TAU * top) {
             let error = found.modes.iter().map(|m| (m.eigenvalue - z).norm()).fold(f64::INFINITY, f64::min);
-            assert!(error < 1e-4 * size, "{trial}: {z} is missing by {error:e}");
+            assert!(within(error, 1e-4 * size, RoundOff), "{trial}: {z} is missing by {error:e}");
         }
         for mode in &found.modes {
             assert!(mode.accurate(), "{trial}: {mode:?}");

@@ -474,6 +474,7 @@ pub(super) mod tests {
     use super::super::tests::{damped, dense_modes, dense_spectrum, nearest, steady};
     use super::super::{certified_modes, complex_modes};
     use super::*;
+    use crate::bounds::{Origin::*, within};
     use crate::equilibrium::samples::{random_system, sparse};
     use crate::linalg::random::Random;
     use crate::system::{Coupling, Skew, System};
@@ -520,8 +521,14 @@ pub(super) mod tests {
             for mode in &modes.modes {
                 let z = mode.eigenvalue;
                 let error = (nearest(z, &exact) - z).norm() / z.norm();
-                assert!(error < 1e-10 && mode.accepted(), "seed {seed}: {z} {error:e} {mode:?}");
-                assert!((mode.growth.total() - z.re).abs() < 1e-8 * z.norm() || z.im == 0.0, "seed {seed}");
+                assert!(
+                    within(error, 1e-10, Tolerance) && mode.accepted(),
+                    "seed {seed}: {z} {error:e} {mode:?}"
+                );
+                assert!(
+                    within((mode.growth.total() - z.re).abs(), 1e-8 * z.norm(), RoundOff) || z.im == 0.0,
+                    "seed {seed}"
+                );
                 unstable += usize::from(mode.unstable());
             }
             let inside = |z: &&c64| {
@@ -552,10 +559,10 @@ pub(super) mod tests {
         let operator = Operator::new(&system, &state).unwrap();
         for mode in &modes {
             let z = mode.eigenvalue;
-            assert!((nearest(z, &exact[..6]) - z).norm() < 1e-10 * z.norm());
+            assert!(within((nearest(z, &exact[..6]) - z).norm(), 1e-10 * z.norm(), Tolerance));
             let left = Block::from_columns(40, &[&mode.left]);
             let residual = operator.value(Side::Left, &[z], &left);
-            assert!(residual.norm(0) < 1e-9 * operator.size(z) * left.norm(0));
+            assert!(within(residual.norm(0), 1e-9 * operator.size(z) * left.norm(0), Tolerance));
         }
     }
 

@@ -88,6 +88,7 @@ pub fn is_unbounded(error: &Error) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bounds::{Origin::*, within};
     use crate::equilibrium::samples::random_system;
     use crate::equilibrium::{SteadyOptions, solve_steady};
     use crate::linalg::sparse::add_scaled;
@@ -118,9 +119,9 @@ mod tests {
                     residue / (c64::new(1.0, beta * omega) * square - omega * omega)
                 };
                 let exact: c64 = (0..40).map(term).sum();
-                assert!((h - exact).norm() < 1e-9 * exact.norm(), "{h} {exact}");
+                assert!(within((h - exact).norm(), 1e-9 * exact.norm(), RoundOff), "{h} {exact}");
             }
-            assert!((found[1] - back[0]).norm() < 1e-10 * back[0].norm());
+            assert!(within((found[1] - back[0]).norm(), 1e-10 * back[0].norm(), RoundOff));
         }
     }
 }

@@ -448,6 +448,7 @@ fn unit(mut x: Mat<c64>) -> Mat<c64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bounds::{Origin::*, within};
 
     #[test]
     fn a_problem_without_directions_has_no_pairs() {
@@ -497,7 +498,7 @@ mod tests {
                 let residual = (0..m).map(|i| row(i).norm_sqr()).sum::<f64>().sqrt();
                 let size = z.norm_sqr() + z.norm() * of_c + of_k;
                 // The change of a matrix whose eigenvalues are parted, 1e-11 at most.
-                assert!(residual < 1e-10 * size, "{trial}: {z} {:e}", residual / size);
+                assert!(within(residual, 1e-10 * size, RoundOff), "{trial}: {z} {:e}", residual / size);
             }
         }
     }

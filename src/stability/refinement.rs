@@ -234,6 +234,7 @@ fn mixing(rows: usize, random: &mut Random) -> Mat<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bounds::{Origin::*, within};
 
     /// Left corrections of `count` columns, all multiples of (1, 2, …), eight at a time.
     fn alike(count: usize) -> Mat<f64> {
@@ -254,7 +255,11 @@ mod tests {
         for column in many.col_iter() {
             let size = column[0].abs();
             assert!(size > 1e-3, "a random combination does not vanish");
-            assert!((0..5).all(|i| (column[i] - (i + 1) as f64 * column[0]).abs() < 1e-9 * size.max(1e3)));
+            assert!((0..5).all(|i| within(
+                (column[i] - (i + 1) as f64 * column[0]).abs(),
+                1e-9 * size.max(1e3),
+                RoundOff
+            )));
         }
     }
 }

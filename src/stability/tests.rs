@@ -1,4 +1,5 @@
 use super::*;
+use crate::bounds::{Origin::*, within};
 use crate::contact::{Coulomb, Exponential, FrictionSense, NormalLaw, SlidingLaw};
 use crate::equilibrium::samples::*;
 use crate::equilibrium::{
@@ -129,10 +130,12 @@ fn two_dof_critical_friction_and_stiffness_are_those_of_the_closed_form() {
     for (k_t, mu_c, k_c) in [(0.5, 0.625, 1.3), (0.3f64.sqrt(), 0.650, 1.3167)] {
         let mu = root(|mu| discriminant(&two_dof(k_t, 1.0, mu)), 0.5, 0.8);
         let exact = root(|mu| closed(k_t, 1.0, mu), 0.5, 0.8);
-        assert!((mu - exact).abs() < 1e-9 && (mu - mu_c).abs() < 3e-4, "{mu} {exact}");
+        assert!(within((mu - exact).abs(), 1e-9, RoundOff), "{mu} {exact}");
+        assert!(within((mu - mu_c).abs(), 3e-4, Reference), "{mu} {mu_c}");
         let k_n = root(|k| discriminant(&two_dof(k_t, k, 0.4)), 1.1, 1.6);
         let exact = root(|k| closed(k_t, k, 0.4), 1.1, 1.6);
-        assert!((k_n - exact).abs() < 1e-9 && (k_n - k_c).abs() < 1e-4, "{k_n} {exact}");
+        assert!(within((k_n - exact).abs(), 1e-9, RoundOff), "{k_n} {exact}");
+        assert!(within((k_n - k_c).abs(), 1e-4, Reference), "{k_n} {k_c}");
     }
 }
 
@@ -168,7 +171,7 @@ fn a_mode_that_is_not_accurate_is_neither_stable_nor_unstable() {
 fn two_dof_without_tangential_spring_never_flutters_at_moderate_friction() {
     for k in 1..200 {
         let found = modes_of(&two_dof(0.0, 0.05 * k as f64, 0.4), 2, [0.0, 10.0]);
-        assert!(found.modes.iter().all(|m| m.growth_rate() < 1e-7), "k_n = {}", 0.05 * k as f64);
+        assert!(found.modes.iter().all(|m| within(m.growth_rate(), 1e-7, RoundOff)), "k_n = 0.05 × {k}");
     }
 }
 
@@ -193,7 +196,7 @@ fn hoffmann_two_dof_flutter() {
         }
     };
     let mu = root(|mu| discriminant(&system(mu)), 0.3, 0.6);
-    assert!((mu - 0.472377).abs() < 5e-7, "{mu}");
+    assert!(within((mu - 0.472377).abs(), 5e-7, Reference), "{mu}");
 }
 
 /// Sinou and Jézéquel's two-degree-of-freedom system: damping can destabilise. Two contacts that carry all the
@@ -220,7 +223,7 @@ fn sinou(eta: [f64; 2], mu: f64) -> System {
 #[test]
 fn sinou_jezequel_damping_shifts_the_onset() {
     let undamped = root(|mu| discriminant(&sinou([0.0; 2], mu)) / 1e8, 0.1, 0.4);
-    assert!((undamped - 0.291667).abs() < 5e-7, "{undamped}");
+    assert!(within((undamped - 0.291667).abs(), 5e-7, Reference), "{undamped}");
     for (eta, mu_c) in [
         ([0.02, 0.02], 0.289425),
         ([0.02, 0.05], 0.247676),
@@ -233,7 +236,7 @@ fn sinou_jezequel_damping_shifts_the_onset() {
         };
         // The table's damped thresholds are those of ηᵢωᵢ as the damping per unit of mass.
         let mu = root(growth, 0.05, 0.4);
-        assert!((mu - mu_c).abs() < 2e-6, "{eta:?}: {mu} {mu_c}");
+        assert!(within((mu - mu_c).abs(), 2e-6, Reference), "{eta:?}: {mu} {mu_c}");
     }
 }
 
@@ -263,14 +266,14 @@ fn falling_friction_is_negative_damping_below_its_bound() {
         let c = factor * slope;
         let found = modes_of(&belt(c, load, velocity, FrictionSense::WithSlip), 2, [0.1, 10.0]);
         let slow = &found.modes[0];
-        assert!((slow.growth_rate() + 0.5 * (c - slope)).abs() < 1e-12);
+        assert!(within((slow.growth_rate() + 0.5 * (c - slope)).abs(), 1e-12, RoundOff));
         assert_eq!(slow.unstable(), factor < 1.0);
-        assert!((slow.growth.falling_friction - 0.5 * slope).abs() < 1e-12);
-        assert!((slow.growth.structural_damping + 0.5 * c).abs() < 1e-12);
+        assert!(within((slow.growth.falling_friction - 0.5 * slope).abs(), 1e-12, RoundOff));
+        assert!(within((slow.growth.structural_damping + 0.5 * c).abs(), 1e-12, RoundOff));
     }
     // A belt that pulls against the sliding turns the same law into damping.
     let found = modes_of(&belt(0.0, load, velocity, FrictionSense::AgainstSliding), 2, [0.1, 10.0]);
-    assert!((found.modes[0].growth_rate() + 0.5 * slope).abs() < 1e-12);
+    assert!(within((found.modes[0].growth_rate() + 0.5 * slope).abs(), 1e-12, RoundOff));
 }
 
 /// Damping of every kind by turns.
@@ -312,16 +315,17 @@ fn random_systems_agree_with_the_dense_full_order_solution() {
             let exact = nearest(mode.eigenvalue, &exact);
             let error = (mode.eigenvalue - exact).norm() / exact.norm();
             assert!(
-                error < 1e-9,
+                within(error, 1e-9, Tolerance),
                 "seed {seed}: {} {exact}: {error:.1e} estimated {:.1e}",
                 mode.eigenvalue,
                 mode.eigenvalue_error
             );
             assert!(mode.accepted(), "seed {seed}: {mode:?}");
-            assert!((mode.growth.total() - mode.growth_rate()).abs() < 1e-8 * exact.norm(), "seed {seed}");
+            let off = (mode.growth.total() - mode.growth_rate()).abs();
+            assert!(within(off, 1e-8 * exact.norm(), RoundOff), "seed {seed}");
             assert!(mode.condition > 0.99);
             let shares: f64 = mode.participation.iter().map(|(_, share)| share).sum();
-            assert!(shares <= 1.0 + 1e-10 && shares > 0.3);
+            assert!(within(shares - 1.0, 1e-10, RoundOff) && shares > 0.3);
             unstable += usize::from(mode.unstable());
         }
         refined += found.refinements;
@@ -350,7 +354,7 @@ fn many_contact_directions_agree_with_the_dense_full_order_solution() {
         for mode in &found.modes {
             let exact = nearest(mode.eigenvalue, &exact);
             let error = (mode.eigenvalue - exact).norm() / exact.norm();
-            assert!(error < 1e-9 && mode.accepted(), "seed {seed}: {error:.1e} {mode:?}");
+            assert!(within(error, 1e-9, Tolerance) && mode.accepted(), "seed {seed}: {error:.1e} {mode:?}");
         }
     }
 }
@@ -391,11 +395,14 @@ fn the_second_method_confirms_every_mode_and_notices_one_that_is_left_out() {
         let confirmation = confirm(&system, &state, &found, band, &()).unwrap();
         assert!(confirmation.holds(), "kind {kind}: {confirmation:?}");
         assert_eq!(confirmation.confirmed, found.modes.iter().filter(|m| m.eigenvalue.im > 0.0).count());
-        assert!(confirmation.largest_difference < 1e-8 * confirmation.condition.max(1.0), "{confirmation:?}");
+        assert!(
+            within(confirmation.largest_difference, 1e-8 * confirmation.condition.max(1.0), Tolerance),
+            "{confirmation:?}"
+        );
         let left_out = found.modes.remove(5).eigenvalue;
         let confirmation = confirm(&system, &state, &found, band, &()).unwrap();
         assert_eq!(confirmation.missed.len(), 1);
-        assert!((confirmation.missed[0] - left_out).norm() < 1e-8 * left_out.norm());
+        assert!(within((confirmation.missed[0] - left_out).norm(), 1e-8 * left_out.norm(), Tolerance));
     }
 }
 
@@ -413,7 +420,8 @@ fn left_vectors_annihilate_the_operator_from_the_left() {
         let q = Mat::from_fn(60, 60, |i, j| s * s * m[(i, j)] + s * c[(i, j)] + k[(i, j)]);
         let column = |x: &[c64]| Mat::from_fn(60, 1, |i, _| x[i]);
         let (right, left) = (&q * column(&mode.right), q.adjoint() * column(&mode.left));
-        assert!(right.norm_l2() < 1e-7 * q.norm_l2() && left.norm_l2() < 1e-7 * q.norm_l2());
+        assert!(within(right.norm_l2(), 1e-7 * q.norm_l2(), Tolerance));
+        assert!(within(left.norm_l2(), 1e-7 * q.norm_l2(), Tolerance));
     }
 }
 
@@ -447,14 +455,14 @@ fn transposed_contact_swaps_left_and_right_vectors() {
     for x in &a.modes {
         let same = nearest(x.eigenvalue, &others);
         let y = b.modes.iter().find(|y| y.eigenvalue == same).unwrap();
-        assert!((x.eigenvalue - y.eigenvalue).norm() < 1e-9 * x.eigenvalue.norm());
+        assert!(within((x.eigenvalue - y.eigenvalue).norm(), 1e-9 * x.eigenvalue.norm(), Tolerance));
         // ψᴴQ = 0 is Qᵀψ̄ = 0: the right vector of the transposed system is the conjugate left vector.
         let mac = |p: &[c64], q: &[c64]| {
             let dot = |u: &[c64], v: &[c64]| u.iter().zip(v).map(|(a, b)| a.conj() * b).sum::<c64>();
             dot(p, q).norm_sqr() / (dot(p, p).re * dot(q, q).re)
         };
         let left: Vec<c64> = x.left.iter().map(|z| z.conj()).collect();
-        assert!(mac(&left, &y.right) > 1.0 - 1e-10);
+        assert!(within(1.0 - mac(&left, &y.right), 1e-10, Tolerance));
         differ = differ.max(1.0 - mac(&x.right, &y.right));
     }
     assert!(differ > 1e-3, "the two systems must differ in their right vectors");
@@ -507,7 +515,7 @@ fn the_nearest_of_a_band_are_those_of_all_modes() {
         expected.sort_by(|a, b| a.im.total_cmp(&b.im));
         assert_eq!(some.len(), expected.len());
         for (found, expected) in some.iter().zip(&expected) {
-            assert!((found.eigenvalue - expected).norm() <= 1e-9 * expected.norm());
+            assert!(within((found.eigenvalue - expected).norm(), 1e-9 * expected.norm(), Tolerance));
         }
     }
 }
@@ -540,7 +548,7 @@ fn a_family_gives_what_a_whole_analysis_gives_at_every_member() {
         let ends = [state(&at(0.0, 0.5)), state(&at(0.7, 2.0))];
         let mut family = Family::new(&frame, &ends).unwrap();
         for end in &ends {
-            assert!(family.train(end).unwrap().worst() <= 1e-10, "seed {seed}");
+            assert!(within(family.train(end).unwrap().worst(), 1e-10, Tolerance), "seed {seed}");
         }
         for (mu, velocity) in [(0.0, 0.5), (0.2, 1.7), (0.35, 1.2), (0.6, 0.6)] {
             let system = at(mu, velocity);
@@ -552,7 +560,10 @@ fn a_family_gives_what_a_whole_analysis_gives_at_every_member() {
             let exact: Vec<c64> = whole.modes.iter().map(|m| m.eigenvalue).collect();
             for (z, estimate) in found.eigenvalues.iter().zip(&check.eigenvalue_errors) {
                 let error = (z - nearest(*z, &exact)).norm() / z.norm();
-                assert!(error < 1e-8, "seed {seed}, mu {mu}: {z} {error:.1e} {estimate:.1e}");
+                assert!(
+                    within(error, 1e-8, Tolerance),
+                    "seed {seed}, mu {mu}: {z} {error:.1e} {estimate:.1e}"
+                );
             }
         }
         partial += usize::from(family.dimension() < n);
@@ -571,7 +582,7 @@ fn weights_of_dampings_are_their_sum_on_the_reduced_and_on_the_full_order() {
         |weights: &[f64]| SlidingState { points: steady(&base).points, damping_weights: weights.to_vec() };
     let mut family = Family::new(&frame, &[member(&[1.0, 0.0])]).unwrap();
     for weights in [[1.0, 0.0], [0.0, 1.0]] {
-        assert!(family.train(&member(&weights)).unwrap().worst() <= 1e-10);
+        assert!(within(family.train(&member(&weights)).unwrap().worst(), 1e-10, Tolerance));
         let mut system = base.clone();
         if weights[1] == 1.0 {
             system.structure.damping = other.clone();
@@ -579,7 +590,7 @@ fn weights_of_dampings_are_their_sum_on_the_reduced_and_on_the_full_order() {
         let exact = dense_eigenvalues(&system, &steady(&system), band);
         let found = family.modes(&member(&weights)).unwrap().eigenvalues;
         assert_eq!(found.len(), exact.len());
-        assert!(found.iter().all(|z| (z - nearest(*z, &exact)).norm() < 1e-9 * z.norm()));
+        assert!(found.iter().all(|z| within((z - nearest(*z, &exact)).norm(), 1e-9 * z.norm(), Tolerance)));
     }
-    assert!(family.check(&member(&[0.5, 0.5])).unwrap().worst() < 1e-8);
+    assert!(within(family.check(&member(&[0.5, 0.5])).unwrap().worst(), 1e-8, Tolerance));
 }

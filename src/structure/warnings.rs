@@ -60,6 +60,7 @@ pub fn element_size(part: &Part, nodes: &[[f64; 3]]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bounds::{Origin::*, within};
     use crate::mesh::Cell;
     use crate::structure::samples::STEEL;
     use crate::structure::{Material, PlateTheory, Shell};
@@ -83,11 +84,15 @@ mod tests {
             assert!(errors[1].relative_error > 0.02 && errors[1].relative_error < 0.04, "{errors:?}");
             // c_s/2h with c_s = √(G/ρ) = 3207.6 m/s.
             assert!(
-                errors.iter().all(|error| (error.mindlin_below_hz - 160_382.0).abs() < 50.0),
+                errors.iter().all(|error| within(
+                    (error.mindlin_below_hz - 160_382.0).abs(),
+                    50.0,
+                    Reference
+                )),
                 "{errors:?}"
             );
             let size = element_size(&model.parts[0], &model.nodes);
-            assert!((size - 0.1).abs() < 1e-15, "{size}");
+            assert!(within((size - 0.1).abs(), 1e-15, RoundOff), "{size}");
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Onsets against the roots of growth rates in closed form.
 
 use super::*;
+use crate::bounds::{Origin::*, within};
 use crate::linalg::random::Random;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -58,7 +59,7 @@ fn an_onset_is_a_root_of_the_growth_rate() {
         // A growth rate below 1e-12 |λ| is rounding: the root is known as far as that is from it.
         let aim = 1e-9 + 1e-12 / slope;
         let error = (critical.value - onset).abs();
-        assert!(error < aim, "{trial}: {error:e} at slope {slope:e}, {critical:?}");
+        assert!(within(error, aim, Tolerance), "{trial}: {error:e} at slope {slope:e}, {critical:?}");
     }
 }
 
@@ -88,7 +89,7 @@ fn divergence_is_a_critical_value_whatever_the_band() {
         let [critical] = found.critical[..] else { panic!("{trial}: {:?}", found.critical) };
         assert_eq!(critical.kind, CriticalKind::Divergence, "{trial}");
         assert_eq!(critical.rises, ends[1] > ends[0], "{trial}");
-        assert!((critical.value - onset).abs() < 1e-8, "{trial}: {onset} {critical:?}");
+        assert!(within((critical.value - onset).abs(), 1e-8, Tolerance), "{trial}: {onset} {critical:?}");
     }
 }
 
@@ -107,7 +108,7 @@ fn a_search_with_a_limit_gives_what_it_has() {
         assert_eq!(found.critical.len(), modes);
         for critical in &found.critical {
             let error = (critical.value - onset(critical.branch)).abs();
-            assert!(error <= 1.01 * critical.uncertainty + 1e-15, "{critical:?}");
+            assert!(within(error, 1.01 * critical.uncertainty + 1e-15, Stated), "{critical:?}");
         }
         let solved = problem.solved.load(Ordering::Relaxed);
         assert!(solved <= 2 + 3 * limit, "{solved}");

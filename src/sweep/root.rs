@@ -51,6 +51,7 @@ pub(super) fn narrow(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bounds::{Origin::*, within};
 
     #[test]
     fn smooth_roots_take_few_steps_and_square_roots_as_many_as_bisection() {
@@ -61,7 +62,7 @@ mod tests {
         };
         let bracket = Bracket { below: (1.0, -1.0), above: (2.0, 6.0) };
         let found = narrow(bracket, 1e-12, usize::MAX, smooth).unwrap();
-        assert!((found.above.0 - 2f64.cbrt()).abs() < 1e-12 && count < 20, "{count}");
+        assert!(within((found.above.0 - 2f64.cbrt()).abs(), 1e-12, Stated) && count < 20, "{count}");
         let mut count = 0;
         let onset = |x: f64| {
             count += 1;
@@ -69,9 +70,9 @@ mod tests {
         };
         let bracket = Bracket { below: (0.0, -1e-9), above: (1.0, 0.8) };
         let found = narrow(bracket, 1e-12, usize::MAX, onset).unwrap();
-        assert!((found.above.0 - 0.3).abs() < 1e-12 && count <= 42, "{count}");
+        assert!(within((found.above.0 - 0.3).abs(), 1e-12, Stated) && count <= 42, "{count}");
         let bracket = Bracket { below: (3.0, -1.0), above: (0.0, 2.0) };
         let falling = narrow(bracket, 1e-10, usize::MAX, |x| Ok(2.0 - x));
-        assert!((falling.unwrap().below.0 - 2.0).abs() < 1e-10);
+        assert!(within((falling.unwrap().below.0 - 2.0).abs(), 1e-10, Stated));
     }
 }

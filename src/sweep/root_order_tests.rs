@@ -1,6 +1,7 @@
 //! Critical values at which the growth rate, or the square by which two modes merge, has a root of higher order.
 
 use super::*;
+use crate::bounds::{Origin::*, within};
 use crate::linalg::dense::product;
 use crate::linalg::random::Random;
 use crate::linalg::unsymmetric::eigenpairs;
@@ -106,9 +107,9 @@ fn roots_of_any_order_lie_within_their_uncertainty() {
             found.critical.iter().partition(|c| (c.eigenvalue.norm() / pair.omega - 1.0).abs() < 0.3);
         let [own] = own[..] else { panic!("{trial}: {:?}", found.critical) };
         let error = (own.value - pair.root.2).abs();
-        assert!(error <= own.uncertainty, "{trial}: order {order}, {error:e}, {own:?}");
+        assert!(within(error, own.uncertainty, Stated), "{trial}: order {order}, {error:e}, {own:?}");
         let most = 3.0 * 1e-9f64.powf(1.0 / f64::from(order));
-        assert!(own.uncertainty < most, "{trial}: order {order}, {error:e}, {own:?}");
+        assert!(within(own.uncertainty, most, Stated), "{trial}: order {order}, {error:e}, {own:?}");
         let grows = found.branches.iter().flat_map(|b| b.growing().zip(&found.values[b.first..]));
         let first = grows.filter(|(grows, _)| *grows && !others).map(|(_, p)| *p).fold(1.0, f64::min);
         assert!(first >= pair.root.2 - own.uncertainty, "{trial}: {first}");
@@ -116,7 +117,11 @@ fn roots_of_any_order_lie_within_their_uncertainty() {
         assert_eq!(beside.len(), if inside { 2 } else { 0 }, "{trial}: {:?}", found.critical);
         for c in beside {
             let error = (c.value - OF_OTHERS).abs();
-            assert!(error < 1e-7 && error <= c.uncertainty, "{trial}: {error:e}, {c:?}, {:?}", pair.others);
+            assert!(
+                within(error, 1e-7, Tolerance) && within(error, c.uncertainty, Stated),
+                "{trial}: {error:e}, {c:?}, {:?}",
+                pair.others
+            );
         }
     }
 }
@@ -139,7 +144,7 @@ fn a_touched_boundary_is_not_crossed() {
             assert!(found.branches.iter().all(|b| !b.growing().any(|grows| grows)), "{trial}");
         }
         for c in &found.critical {
-            assert!((c.value - pair.root.2).abs() <= c.uncertainty, "{trial}: {c:?}");
+            assert!(within((c.value - pair.root.2).abs(), c.uncertainty, Stated), "{trial}: {c:?}");
         }
     }
 }

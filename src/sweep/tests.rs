@@ -1,4 +1,5 @@
 use super::*;
+use crate::bounds::{Origin::*, within};
 use crate::contact::{Coulomb, NormalLaw, SlidingLaw};
 use crate::equilibrium::samples::*;
 use crate::equilibrium::{SteadyOptions, solve_steady};
@@ -43,14 +44,22 @@ fn two_dof_critical_values_are_located_to_nine_digits() {
     let found = sweep(&by_friction, &axis(0.1, 0.9, 9), 1e-11, &()).unwrap();
     assert_eq!(found.critical.len(), 1, "{:?}", found.critical);
     let onset = found.critical[0];
-    assert!((onset.value / 0.625 - 1.0).abs() < 1e-9 && onset.rises && onset.kind == CriticalKind::Merging);
-    assert!(onset.uncertainty < 1e-11);
+    assert!(
+        within((onset.value / 0.625 - 1.0).abs(), 1e-9, Tolerance)
+            && onset.rises
+            && onset.kind == CriticalKind::Merging
+    );
+    assert!(within(onset.uncertainty, 1e-11, Stated));
     assert_eq!(found.branches.len(), 2);
     let by_stiffness = Members { system: |p: &[f64]| two_dof(0.5, p[0], 0.4), band: [0.0, 1.0] };
     let found = sweep(&by_stiffness, &axis(3.0, 1.0, 21), 1e-11, &()).unwrap();
     let values: Vec<f64> = found.critical.iter().map(|c| c.value).collect();
     assert_eq!(values.len(), 2, "{:?}", found.critical);
-    assert!((values[0] / 2.5 - 1.0).abs() < 1e-9 && (values[1] / 1.3 - 1.0).abs() < 1e-9, "{values:?}");
+    assert!(
+        within((values[0] / 2.5 - 1.0).abs(), 1e-9, Tolerance)
+            && within((values[1] / 1.3 - 1.0).abs(), 1e-9, Tolerance),
+        "{values:?}"
+    );
     assert!(found.critical[0].rises && !found.critical[1].rises, "a sweep downwards meets them in its order");
 }
 
@@ -75,7 +84,7 @@ fn onsets_of_the_literature() {
     };
     let found =
         sweep(&Members { system: hoffmann, band: [0.0, 10.0] }, &axis(0.1, 0.7, 7), 1e-10, &()).unwrap();
-    assert!((found.critical[0].value - 0.472377).abs() < 5e-7);
+    assert!(within((found.critical[0].value - 0.472377).abs(), 5e-7, Reference));
     // Sinou & Jézéquel (2007): unequal damping brings the onset down from 0.2917 to 0.1413.
     let sinou = |p: &[f64]| {
         let omega = [200.0 * std::f64::consts::PI, 150.0 * std::f64::consts::PI];
@@ -107,7 +116,7 @@ fn onsets_of_the_literature() {
     let found =
         sweep(&Members { system: sinou, band: [1.0, 500.0] }, &axis(0.02, 0.4, 11), 1e-10, &()).unwrap();
     assert_eq!(found.critical.len(), 1);
-    assert!((found.critical[0].value - 0.141296).abs() < 2e-6, "{:?}", found.critical);
+    assert!(within((found.critical[0].value - 0.141296).abs(), 2e-6, Reference), "{:?}", found.critical);
     assert_eq!(found.critical[0].kind, CriticalKind::Growth);
 }
 
@@ -139,7 +148,10 @@ fn branches_pass_through_a_crossing_and_turn_away_at_an_avoided_one() {
     assert!(a.lowest_mac > 0.999);
     assert_eq!(through.interactions.len(), 1);
     let interaction = through.interactions[0];
-    assert!((interaction.value - 0.5).abs() < 1e-6 && interaction.distance < 1e-6);
+    assert!(
+        within((interaction.value - 0.5).abs(), 1e-6, Tolerance)
+            && within(interaction.distance, 1e-6, Tolerance)
+    );
     assert_eq!(interaction.kind, InteractionKind::Crossing);
     let away = follow(0.005);
     let [a, b] = &away.branches[..] else { panic!("two branches") };
@@ -151,7 +163,10 @@ fn branches_pass_through_a_crossing_and_turn_away_at_an_avoided_one() {
     assert_eq!(interaction.kind, InteractionKind::Veering);
     // |ω₂ − ω₁|/ω₂ with ω² = 1.5 ± 0.005.
     let exact = 1.0 - (1.495f64 / 1.505).sqrt();
-    assert!((interaction.value - 0.5).abs() < 1e-3 && (interaction.distance / exact - 1.0).abs() < 1e-6);
+    assert!(
+        within((interaction.value - 0.5).abs(), 1e-3, Tolerance)
+            && within((interaction.distance / exact - 1.0).abs(), 1e-6, Tolerance)
+    );
 }
 
 #[test]
@@ -170,14 +185,18 @@ fn the_boundary_of_a_map_lies_on_the_closed_form() {
         if exact < 0.0 {
             // λ² = −a ± i√−d: the growth rate is the real part of its root.
             let root = c64::new(-0.5 * (2.5 + k_n), (-exact).sqrt()).sqrt();
-            assert!((p.growth_rate - root.re).abs() < 1e-9 * root.norm(), "{} {root}", p.growth_rate);
-            assert!((p.frequency_hz - root.im / TAU).abs() < 1e-9);
+            assert!(
+                within((p.growth_rate - root.re).abs(), 1e-9 * root.norm(), Tolerance),
+                "{} {root}",
+                p.growth_rate
+            );
+            assert!(within((p.frequency_hz - root.im / TAU).abs(), 1e-9, Tolerance));
         }
     }
     let line = boundary(&problem, &axes, &points, 1e-9, &()).unwrap();
     assert!(line.points.len() > 8 && !line.lines.is_empty());
     for [mu, k_n] in &line.points {
-        assert!(closed(*mu, *k_n).abs() < 1e-8, "{mu} {k_n}");
+        assert!(within(closed(*mu, *k_n).abs(), 1e-8, Tolerance), "{mu} {k_n}");
     }
     assert_eq!(line.lines.iter().map(Vec::len).sum::<usize>(), line.points.len());
 }

@@ -174,6 +174,7 @@ impl Loading {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bounds::{Origin::*, within};
 
     #[test]
     fn profiles_and_pushes_run_as_they_say() {
@@ -183,9 +184,13 @@ mod tests {
         }
         let ramp = TimeProfile::Ramp { from: 0.2, duration: 2.0 };
         let ramped = [0.0, 1.0, 5.0].map(|t| ramp.factor(t));
-        assert!(ramped.iter().zip([0.2, 0.6, 1.0]).all(|(a, b)| (a - b).abs() < 1e-15));
+        assert!(ramped.iter().zip([0.2, 0.6, 1.0]).all(|(a, b)| within(
+            (a - b).abs(),
+            10.0 * f64::EPSILON,
+            RoundOff
+        )));
         let back = TimeProfile::Reciprocating { frequency_hz: 2.0, phase: 0.0 };
-        assert!((back.factor(0.25) + 1.0).abs() < 1e-15);
+        assert!(within((back.factor(0.25) + 1.0).abs(), 1e-15, RoundOff));
         // ∫factor against the midpoint rule, and its reach against all of its values.
         let other = TimeProfile::Reciprocating { frequency_hz: 2.0, phase: 1.1 };
         let falling = TimeProfile::Ramp { from: -0.5, duration: 2.0 };
@@ -195,9 +200,13 @@ mod tests {
                 sum += 1e-4 * profile.factor((f64::from(k) + 0.5) * 1e-4);
                 (low, high) = (low.min(sum), high.max(sum));
             }
-            assert!((profile.integral(5.0) - sum).abs() < 1e-6, "{profile:?}");
+            assert!(within((profile.integral(5.0) - sum).abs(), 1e-6, Discretisation), "{profile:?}");
             let reach = profile.reach(5.0);
-            assert!((reach[0] - low).abs() < 1e-6 && (reach[1] - high).abs() < 1e-6, "{profile:?} {reach:?}");
+            assert!(
+                within((reach[0] - low).abs(), 1e-6, Discretisation)
+                    && within((reach[1] - high).abs(), 1e-6, Discretisation),
+                "{profile:?} {reach:?}"
+            );
         }
         let half_sine = Pulse::HalfSine { begin: 1.0, duration: 2.0 };
         let push = Push { direction: SparseVector::from_entries([(0, 2.0)]), course: half_sine };

@@ -160,6 +160,7 @@ fn scale(d: &[f64], x: MatRef<'_, f64>, mut y: MatMut<'_, f64>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bounds::{Origin::*, within};
     use crate::linalg::samples;
     use crate::linalg::sparse::{add_scaled, times};
 
@@ -186,7 +187,10 @@ mod tests {
                 .derive(&motion, Derived { elastic: &mut elastic, inertia: &mut inertia, viscous: there });
             let near = |found: &Mat<f64>, a: &SparseMatrix, first: usize| {
                 let expected = times(a, motion.subcols(first, 3 - first));
-                assert!((found - &expected).norm_max() <= 1e-11 * expected.norm_max(), "{way}");
+                assert!(
+                    within((found - &expected).norm_max(), 1e-11 * expected.norm_max(), RoundOff),
+                    "{way}"
+                );
             };
             near(&elastic, &k, 0);
             near(&inertia, &m, 1);

@@ -2,6 +2,7 @@ mod held_load;
 mod sticking;
 
 use super::*;
+use crate::bounds::{Origin::*, within};
 use crate::contact::{Bristle, Coulomb, Hyperbolic, NormalLaw, SlidingLaw, Stribeck};
 use crate::equilibrium::samples::{pair, point, random_system, sparse, structure, two_dof, vector};
 use crate::equilibrium::{SteadyOptions, SteadySliding, solve_steady};
@@ -88,11 +89,11 @@ fn the_oscillator_follows_the_amplification_matrix_with_its_damping_and_frequenc
             for k in 0..3 {
                 let size = 1.0 + big_omega * big_omega;
                 assert!(
-                    (end.state.motion[(0, k)] - x[(k, 0)]).abs() < 1e-12 * size,
+                    within((end.state.motion[(0, k)] - x[(k, 0)]).abs(), 1e-12 * size, RoundOff),
                     "{scheme:?} {big_omega} {k}"
                 );
             }
-            assert!(end.worst_residual < 1e-12, "{:e}", end.worst_residual);
+            assert!(within(end.worst_residual, 1e-12, RoundOff), "{:e}", end.worst_residual);
         }
     }
     // The published spectral radii at infinite frequency, and the frequency of the trapezoidal rule. HHT(−1/3) has a threefold
@@ -104,11 +105,11 @@ fn the_oscillator_follows_the_amplification_matrix_with_its_damping_and_frequenc
     ] {
         let spectrum = amplification(scheme, 1e8).eigenvalues().unwrap();
         let radius = spectrum.iter().map(|z| z.norm()).fold(0.0, f64::max);
-        assert!((radius - rho).abs() < 1e-4, "{radius} {rho}");
+        assert!(within((radius - rho).abs(), 1e-4, RoundOff), "{radius} {rho}");
     }
     let phase = amplification(Scheme::TRAPEZOIDAL, 0.7).eigenvalues().unwrap();
     let turned = phase.iter().map(|z| z.im.atan2(z.re)).fold(0.0, f64::max);
-    assert!((turned - 2.0 * 0.35f64.atan()).abs() < 1e-14);
+    assert!(within((turned - 2.0 * 0.35f64.atan()).abs(), 1e-14, RoundOff));
 }
 
 #[test]
@@ -126,7 +127,7 @@ fn schemes_are_of_second_order_where_they_should_be() {
     for scheme in schemes() {
         let order = (error(scheme, 800) / error(scheme, 1600)).log2();
         let expected = if scheme.gamma == 0.6 && scheme.alpha_f == 0.0 { 1.0 } else { 2.0 };
-        assert!((order - expected).abs() < 0.1, "{scheme:?}: {order}");
+        assert!(within((order - expected).abs(), 0.1, Discretisation), "{scheme:?}: {order}");
     }
 }
 
@@ -147,7 +148,7 @@ fn the_trapezoidal_rule_keeps_the_energy_of_a_linear_system_over_a_million_steps
     let before = from.energy();
     let end = run(&model, from, plan(Scheme::TRAPEZOIDAL, 0.1, 1_000_000));
     let drift = (end.state.energy() / before - 1.0).abs();
-    assert!(drift < 1e-10, "{drift:e}");
+    assert!(within(drift, 1e-10, RoundOff), "{drift:e}");
 }
 
 /// A random system in sliding contact with viscous and modal damping.
@@ -188,7 +189,12 @@ pub(super) fn full_newton_agrees(
     let largest = states.iter().map(|m| m.col(0).norm_max()).fold(0.0, f64::max);
     let end = march(model, State::steady(model, steady), &full, &(), &mut |moment| {
         let difference = (moment.state.motion.col(0) - states[moment.step].col(0)).norm_max();
-        assert!(difference <= 1e-10 * largest, "{:?}, step {}: {difference:e}", full.scheme, moment.step);
+        assert!(
+            within(difference, 1e-10 * largest, Tolerance),
+            "{:?}, step {}: {difference:e}",
+            full.scheme,
+            moment.step
+        );
         Ok(())
     })
     .unwrap();
@@ -222,7 +228,7 @@ fn the_condensed_step_is_the_full_newton_step_through_lift_off() {
         })
         .unwrap();
         assert!(open > 100 && open < 3900 && back > 0, "{open} {back}");
-        assert!(end.worst_residual < 1e-9, "{scheme:?}: {:e}", end.worst_residual);
+        assert!(within(end.worst_residual, 1e-9, Tolerance), "{scheme:?}: {:e}", end.worst_residual);
         full_newton_agrees(&model, &steady, condensed, &states);
     }
 }
@@ -259,9 +265,12 @@ fn momentum_and_energy_pass_through_an_impact() {
     .unwrap();
     let v = end.state.motion.col_as_slice(1);
     assert!(touched > 100);
-    assert!((2.0 * v[0] + 3.0 * v[1] - 0.5).abs() < 1e-12, "{v:?}");
+    assert!(within((2.0 * v[0] + 3.0 * v[1] - 0.5).abs(), 1e-12, RoundOff), "{v:?}");
     // An elastic impact turns the relative velocity round: v₁ = −0.8, v₂ = 0.7.
-    assert!((v[0] + 0.8).abs() < 1e-3 && (v[1] - 0.7).abs() < 1e-3, "{v:?}");
+    assert!(
+        within((v[0] + 0.8).abs(), 1e-3, Discretisation) && within((v[1] - 0.7).abs(), 1e-3, Discretisation),
+        "{v:?}"
+    );
 }
 
 /// λ of a march that starts along a mode: the complex amplitude c from u = Re(c φ), v = Re(c λ φ) at one degree of
@@ -304,8 +313,11 @@ fn small_disturbances_grow_and_turn_as_the_complex_eigenvalues_say() {
             let coarse = measured(system, Scheme::TRAPEZOIDAL, 4e-3, mode);
             let fine = measured(system, Scheme::TRAPEZOIDAL, 2e-3, mode);
             let error = |(lambda, found): (c64, c64)| (found - lambda).norm() / lambda.norm();
-            assert!(error(fine) < 1e-3, "{k} {mode}: {fine:?}");
-            assert!(error(fine) < 0.3 * error(coarse) + 1e-6, "{k} {mode}: {coarse:?} {fine:?}");
+            assert!(within(error(fine), 1e-3, Discretisation), "{k} {mode}: {fine:?}");
+            assert!(
+                within(error(fine), 0.3 * error(coarse) + 1e-6, Discretisation),
+                "{k} {mode}: {coarse:?} {fine:?}"
+            );
             unstable += usize::from(fine.0.re > 1e-3);
         }
     }
@@ -340,7 +352,7 @@ fn a_model_reduced_to_all_it_has_moves_like_the_full_one() {
     let back = reduced.expand(b.motion.col_as_slice(0));
     let size = a.motion.col(0).norm_max();
     let off = back.iter().zip(a.motion.col_as_slice(0)).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
-    assert!(off < 1e-8 * size, "{off:e} of {size:e}");
+    assert!(within(off, 1e-8 * size, RoundOff), "{off:e} of {size:e}");
 }
 
 /// A track of six stations whose contact points turn round a little from one to the next.
@@ -394,7 +406,7 @@ fn a_travelling_contact_that_sticks_is_condensed_exactly_too() {
         })
         .unwrap();
         assert!(open > 20 && stuck > 20 && stuck < 3900 && far > 0.1, "{open} {stuck} {far}");
-        assert!(end.worst_residual < 1e-9, "{scheme:?}: {:e}", end.worst_residual);
+        assert!(within(end.worst_residual, 1e-9, Tolerance), "{scheme:?}: {:e}", end.worst_residual);
         full_newton_agrees(&model, &steady, condensed, &states);
     }
 }
@@ -418,7 +430,7 @@ fn a_contact_that_has_travelled_slowly_stands_like_one_that_was_set_there() {
     let largest = there.points.iter().map(|p| p.forces.normal).fold(0.0, f64::max);
     for (p, point) in there.points.iter().enumerate() {
         let off = end.contact_forces(p)[0] - point.forces.normal;
-        assert!(off.abs() < 1e-3 * largest, "{p}: {off:e} of {largest}");
+        assert!(within(off.abs(), 1e-3 * largest, Discretisation), "{p}: {off:e} of {largest}");
     }
     assert!(
         there
@@ -471,7 +483,9 @@ fn a_mass_on_a_belt_sticks_and_slips_with_the_period_of_the_exact_solution() {
     .unwrap();
     let periods: Vec<f64> = begins.windows(2).map(|w| w[1] - w[0]).collect();
     assert!(periods.len() >= 2, "{begins:?}");
-    let near = |found: f64, exact: f64| assert!((found / exact - 1.0).abs() < 1e-3, "{found} {exact}");
+    let near = |found: f64, exact: f64| {
+        assert!(within((found / exact - 1.0).abs(), 1e-3, Discretisation), "{found} {exact}")
+    };
     periods.iter().for_each(|period| near(*period, 12.001031));
     near(sticking as f64 * step / 2.0, 7.705032);
     near(range[1], 1.133945);
@@ -491,7 +505,7 @@ fn steps_are_split_until_the_frequency_is_as_right_as_was_asked() {
     };
     let (coarse, few) = go(1e-2);
     let (fine, many) = go(1e-4);
-    assert!(coarse < 1e-2 && fine < 1e-4 && fine > 1e-6, "{coarse:e} {fine:e}");
+    assert!(within(coarse, 1e-2, Stated) && within(fine, 1e-4, Stated) && fine > 1e-6, "{coarse:e} {fine:e}");
     // (ωΔt)²/12 is 0.033: a fourth of it at each halving.
     assert_eq!((few, many), (400, 200 * 32));
 }

@@ -52,6 +52,7 @@ impl Track {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bounds::{Origin::*, within};
 
     #[test]
     fn between_stations_what_is_quadratic_is_exact_and_all_is_smooth() {
@@ -62,17 +63,20 @@ mod tests {
         let (line, square) = (|s: f64| 2.0 + 3.0 * s, |s: f64| (s - 0.05).powi(2));
         for k in 0..=50 {
             let s = -0.2 + 0.01 * f64::from(k);
-            assert!((at(&line, s) - line(s)).abs() < 1e-14, "{s}");
+            assert!(within((at(&line, s) - line(s)).abs(), 1e-14, RoundOff), "{s}");
             if (-0.1..=0.2).contains(&s) {
-                assert!((at(&square, s) - square(s)).abs() < 1e-14, "{s}");
+                assert!(within((at(&square, s) - square(s)).abs(), 1e-14, RoundOff), "{s}");
             }
             let rough = |s: f64| (25.0 * s).sin();
             let (h, slope) = (1e-7, |a: f64, b: f64| (at(&rough, b) - at(&rough, a)) / (b - a));
             if k % 10 == 0 && k > 0 && k < 50 {
-                assert!((slope(s - h, s) - slope(s, s + h)).abs() < 1e-4, "{s}");
-                assert!((at(&rough, s) - rough(s)).abs() < 1e-12);
+                assert!(within((slope(s - h, s) - slope(s, s + h)).abs(), 1e-4, Reference), "{s}");
+                assert!(within((at(&rough, s) - rough(s)).abs(), 1e-12, RoundOff));
             }
         }
-        assert!((at(&line, -0.25) - line(-0.25)).abs() < 1e-14 && (at(&line, 0.4) - line(0.4)).abs() < 1e-14);
+        assert!(
+            within((at(&line, -0.25) - line(-0.25)).abs(), 1e-14, RoundOff)
+                && within((at(&line, 0.4) - line(0.4)).abs(), 1e-14, RoundOff)
+        );
     }
 }

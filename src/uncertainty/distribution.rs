@@ -50,23 +50,24 @@ fn point(p: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bounds::{Origin::*, within};
 
     #[test]
     fn quantiles_are_those_of_tables() {
         // 97.5 % of the standard normal distribution lie below 1.959964, 84.134475 % below 1.
         let wide = Distribution { between: [-50.0, 70.0], normal: Some([10.0, 2.0]), log: false };
         for (p, x) in [(0.975, 13.919_928), (0.841_344_75, 12.0), (0.5, 10.0), (0.025, 6.080_072)] {
-            assert!((wide.quantile(p) - x).abs() < 1e-6, "{p}: {}", wide.quantile(p));
+            assert!(within((wide.quantile(p) - x).abs(), 1e-6, Reference), "{p}: {}", wide.quantile(p));
         }
         // Of the half above the mean, a half lies below 0.674490 deviations.
         let half = Distribution { between: [10.0, 70.0], ..wide };
-        assert!((half.quantile(0.5) - 11.348_980).abs() < 1e-6, "{}", half.quantile(0.5));
+        assert!(within((half.quantile(0.5) - 11.348_980).abs(), 1e-6, Reference), "{}", half.quantile(0.5));
         let uniform = Distribution { between: [2.0, 4.0], normal: None, log: false };
         assert_eq!([0.0, 0.25, 1.0].map(|p| uniform.quantile(p)), [2.0, 2.5, 4.0]);
         let decades = Distribution { between: [1e2, 1e6], normal: None, log: true };
-        assert!((decades.quantile(0.5) / 1e4 - 1.0).abs() < 1e-14);
+        assert!(within((decades.quantile(0.5) / 1e4 - 1.0).abs(), 1e-14, RoundOff));
         let log = Distribution { between: [1e2, 1e6], normal: Some([1e4, 0.1]), log: true };
-        assert!((log.quantile(0.841_344_75) / (1e4 * 0.1_f64.exp()) - 1.0).abs() < 1e-8);
+        assert!(within((log.quantile(0.841_344_75) / (1e4 * 0.1_f64.exp()) - 1.0).abs(), 1e-8, Reference));
     }
 
     #[test]

@@ -42,6 +42,7 @@ pub fn samples(of: &[Distribution], count: usize, sampling: Sampling, seed: u64)
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bounds::{Origin::*, within};
 
     const OF: [Distribution; 2] = [
         Distribution { between: [0.0, 1.0], normal: None, log: false },
@@ -56,12 +57,16 @@ mod tests {
         assert!(intervals.iter().enumerate().all(|(k, own)| k == *own));
         // The mean of a stratified sample is much nearer to the expected value than 1/√n.
         let mean = all.iter().map(|sample| sample[1]).sum::<f64>() / 200.0;
-        assert!((mean - 2.0).abs() < 0.01, "{mean}");
+        assert!(within((mean - 2.0).abs(), 0.01, RandomSample), "{mean}");
         assert_eq!(samples(&OF, 200, Sampling::LatinHypercube, 7), all);
         assert_ne!(samples(&OF, 200, Sampling::LatinHypercube, 8), all);
         // Without correlation, as far as so many samples show it.
         let products = all.iter().map(|sample| (sample[0] - 0.5) * (sample[1] - 2.0)).sum::<f64>();
-        assert!((products / 200.0 / (1.0 / 12.0_f64).sqrt()).abs() < 3.0 / 200.0_f64.sqrt());
+        assert!(within(
+            (products / 200.0 / (1.0 / 12.0_f64).sqrt()).abs(),
+            3.0 / 200.0_f64.sqrt(),
+            RandomSample
+        ));
     }
 
     #[test]
@@ -74,6 +79,10 @@ mod tests {
         assert_eq!(first, alone);
         let mean = all.iter().map(|sample| sample[1]).sum::<f64>() / 4000.0;
         let variance = all.iter().map(|sample| (sample[1] - mean).powi(2)).sum::<f64>() / 4000.0;
-        assert!((mean - 2.0).abs() < 0.05 && (variance - 1.0).abs() < 0.07, "{mean}, {variance}");
+        assert!(
+            within((mean - 2.0).abs(), 0.05, RandomSample)
+                && within((variance - 1.0).abs(), 0.07, RandomSample),
+            "{mean}, {variance}"
+        );
     }
 }

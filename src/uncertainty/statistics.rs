@@ -120,6 +120,7 @@ pub fn first_order(x: &[f64], y: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bounds::{Origin::*, within};
     use crate::uncertainty::{Distribution, Sampling, samples};
     use std::f64::consts::PI;
 
@@ -127,18 +128,31 @@ mod tests {
     fn intervals_are_those_of_tables() {
         // None of n: 1 − (α/2)^(1/n). The others: quantiles of the beta distribution by R.
         let none = proportion(0, 10, 0.95);
-        assert!(none.limits[0] == 0.0 && (none.limits[1] - (1.0 - 0.025_f64.powf(0.1))).abs() < 1e-8);
+        assert!(
+            none.limits[0] == 0.0
+                && within((none.limits[1] - (1.0 - 0.025_f64.powf(0.1))).abs(), 1e-8, Tolerance)
+        );
         let all = proportion(10, 10, 0.95);
-        assert!((all.limits[0] - 0.025_f64.powf(0.1)).abs() < 1e-8 && all.limits[1] == 1.0);
+        assert!(within((all.limits[0] - 0.025_f64.powf(0.1)).abs(), 1e-8, Tolerance) && all.limits[1] == 1.0);
         for (count, of, limits) in [(5, 10, [0.187_086, 0.812_914]), (1, 20, [0.001_265, 0.248_733])] {
             let found = proportion(count, of, 0.95).limits;
-            assert!(found.iter().zip(limits).all(|(a, b)| (a - b).abs() < 1e-6), "{found:?}");
+            assert!(
+                found.iter().zip(limits).all(|(a, b)| within((a - b).abs(), 1e-6, Reference)),
+                "{found:?}"
+            );
         }
         // Of very many samples the normal distribution has it, too.
         let many = proportion(300_000, 1_000_000, 0.95).limits;
         let half = 1.959_964 * (0.3 * 0.7 / 1e6_f64).sqrt();
-        assert!((many[0] - (0.3 - half)).abs() < 2e-6 && (many[1] - (0.3 + half)).abs() < 2e-6, "{many:?}");
-        assert!(proportion(1, 1_000_000, 0.999).limits[0] < 1e-9);
+        assert!(
+            within((many[0] - (0.3 - half)).abs(), 2e-6, Theory)
+                && within((many[1] - (0.3 + half)).abs(), 2e-6, Theory),
+            "{many:?}"
+        );
+        // One of n: 1 − (1 − p)^n = α/2 at the lower limit p.
+        let seldom = -f64::exp_m1(f64::ln_1p(-0.0005) / 1e6);
+        let found = proportion(1, 1_000_000, 0.999).limits[0];
+        assert!(within((found / seldom - 1.0).abs(), 1e-6, Tolerance), "{found:e} {seldom:e}");
     }
 
     #[test]
@@ -153,11 +167,11 @@ mod tests {
     fn ranks_correlate_along_any_monotonic_curve() {
         let x = [3.0, 1.0, 2.0, 5.0, 4.0];
         let y = x.map(|x: f64| x.exp());
-        assert!((spearman(&x, &y) - 1.0).abs() < 1e-15);
-        assert!((spearman(&x, &y.map(|y| -y)) + 1.0).abs() < 1e-15);
+        assert!(within((spearman(&x, &y) - 1.0).abs(), 1e-15, RoundOff));
+        assert!(within((spearman(&x, &y.map(|y| -y)) + 1.0).abs(), 1e-15, RoundOff));
         // With ties, by hand: ranks 0.5, 0.5, 2 and 0, 1, 2.
         let rho = spearman(&[1.0, 1.0, 2.0], &[1.0, 2.0, 3.0]);
-        assert!((rho - 0.75_f64.sqrt()).abs() < 1e-15, "{rho}");
+        assert!(within((rho - 0.75_f64.sqrt()).abs(), 10.0 * f64::EPSILON, RoundOff), "{rho}");
         assert!(spearman(&x, &[1.0; 5]).is_nan() && first_order(&x, &[1.0; 5]).is_nan());
     }
 
@@ -173,7 +187,7 @@ mod tests {
             for (j, exact) in [0.3139, 0.4424, 0.0].into_iter().enumerate() {
                 let x: Vec<f64> = all.iter().map(|sample| sample[j]).collect();
                 let found = first_order(&x, &y);
-                assert!((found - exact).abs() < 0.03, "{sampling:?} {j}: {found}");
+                assert!(within((found - exact).abs(), 0.03, RandomSample), "{sampling:?} {j}: {found}");
             }
         }
     }

@@ -182,6 +182,7 @@ fn bisect(f: &impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bounds::{Origin::*, within};
 
     fn unit(nu: f64) -> ThinPlate {
         ThinPlate { youngs_modulus: 12.0 * (1.0 - nu * nu), poissons_ratio: nu, density: 1.0, thickness: 1.0 }
@@ -200,7 +201,10 @@ mod tests {
     fn assert_table(found: impl Fn(usize) -> f64, table: &[f64]) {
         for (n, expected) in table.iter().enumerate() {
             let value = found(n);
-            assert!((value - expected).abs() < 6e-5, "n = {n}: {value} instead of {expected}");
+            assert!(
+                within((value - expected).abs(), 6e-5, Reference),
+                "n = {n}: {value} instead of {expected}"
+            );
         }
     }
 

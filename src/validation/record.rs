@@ -122,6 +122,7 @@ impl Near {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bounds::{Origin::*, within};
 
     #[test]
     fn peaks_are_found_where_they_are_sought_and_measured_against_the_highest() {
@@ -134,11 +135,15 @@ mod tests {
             within: 0.02,
             below_hz,
         };
-        assert!((record.peak_near(&near(&[936.0], 1e9)) - 936.4).abs() < 0.05);
-        assert!((record.level(&near(&[936.0], 1e9), true) + 20.0).abs() < 1.0);
-        assert!(record.level(&near(&[1650.0, 936.0], 1e9), true).abs() < 1e-12);
-        assert!((record.level(&near(&[1661.0], 1e9), false) + 10.5).abs() < 1.0);
-        assert!((record.level(&near(&[1661.0, 936.0], 2200.0), false) + 30.5).abs() < 1.0);
+        assert!(within((record.peak_near(&near(&[936.0], 1e9)) - 936.4).abs(), 0.05, Discretisation));
+        assert!(within((record.level(&near(&[936.0], 1e9), true) + 20.0).abs(), 1.0, Discretisation));
+        assert!(within(record.level(&near(&[1650.0, 936.0], 1e9), true).abs(), 1e-12, RoundOff));
+        assert!(within((record.level(&near(&[1661.0], 1e9), false) + 10.5).abs(), 1.0, Discretisation));
+        assert!(within(
+            (record.level(&near(&[1661.0, 936.0], 2200.0), false) + 30.5).abs(),
+            1.0,
+            Discretisation
+        ));
         let silent = ChannelRecord::new(&values, 2e-5, [1.0, 2.0]);
         assert!(
             silent.peak_near(&near(&[936.0], 1e9)).is_nan()
@@ -157,10 +162,24 @@ mod tests {
         let record = ChannelRecord::new(&values, 1e-3, [1.0, 4.0]);
         // b₁ = A/(π² d (1 − d)) sin πd of a triangle with rise d = 0.75 and amplitude A = 1, times 2.
         let line = 2.0 * (0.75 * std::f64::consts::PI).sin() / (std::f64::consts::PI.powi(2) * 0.75 * 0.25);
-        assert!((record.tone().frequency_hz - 2.5).abs() < 1e-3, "{:?}", record.tone());
-        assert!((record.tone().amplitude / line - 1.0).abs() < 2e-3, "{:?} {line}", record.tone());
-        assert!((record.period() - 0.4).abs() < 1e-9 && (record.rise() - 0.3).abs() < 1.1e-3);
-        assert!((record.amplitude() - 1.0).abs() < 0.02 && (record.highest() - 3.0).abs() < 0.02);
+        assert!(
+            within((record.tone().frequency_hz - 2.5).abs(), 1e-3, Discretisation),
+            "{:?}",
+            record.tone()
+        );
+        assert!(
+            within((record.tone().amplitude / line - 1.0).abs(), 2e-3, Discretisation),
+            "{:?} {line}",
+            record.tone()
+        );
+        assert!(
+            within((record.period() - 0.4).abs(), 1e-9, RoundOff)
+                && within((record.rise() - 0.3).abs(), 1.1e-3, Discretisation)
+        );
+        assert!(
+            within((record.amplitude() - 1.0).abs(), 0.02, Discretisation)
+                && within((record.highest() - 3.0).abs(), 0.02, Discretisation)
+        );
         let short = ChannelRecord::new(&values, 1e-3, [1.0, 1.2]);
         assert!(short.period().is_nan() && short.rise().is_nan() && short.lowest() >= 1.0);
         assert!(ChannelRecord::new(&values, 1e-3, [7.0, 8.0]).amplitude().is_nan());

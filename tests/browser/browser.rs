@@ -7,6 +7,7 @@ use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::OnceLock;
+use stridor::bounds::{Origin::*, within};
 
 const PROGRAMS: [&str; 2] = ["/usr/bin/chromium", "/usr/bin/chromium-browser"];
 
@@ -109,7 +110,10 @@ fn the_sound_decodes_and_plays() {
     let recordings = found["found"].as_array().unwrap();
     for one in recordings {
         let number = |key: &str| one[key].as_f64().unwrap();
-        assert!(number("decoded") > 0.1 && (number("decoded") - number("player")).abs() < 1e-3, "{one:#}");
+        assert!(
+            number("decoded") > 0.1 && within((number("decoded") - number("player")).abs(), 1e-3, Reference),
+            "{one:#}"
+        );
         assert!((0.5..=1.0).contains(&number("peak")) && number("position") > 0.0, "{one:#}");
     }
     // In front of the plate and behind it the pressure is opposite.
@@ -130,9 +134,9 @@ fn the_motion_in_time_moves_and_says_when() {
         let words = found["times"][k].as_str().unwrap();
         words.split(' ').rev().nth(1).unwrap().parse().unwrap()
     };
-    assert!((time(0) - (400.0 - 1000.0 / 272.95)).abs() < 0.01, "{found:#}");
+    assert!(within((time(0) - (400.0 - 1000.0 / 272.95)).abs(), 0.01, Reference), "{found:#}");
     for k in [1, 2] {
-        assert!((time(k) - time(k - 1) - 250.0 / 272.95).abs() < 0.01, "{found:#}");
+        assert!(within((time(k) - time(k - 1) - 250.0 / 272.95).abs(), 0.01, Reference), "{found:#}");
     }
     assert!(found["slower"][0] != found["slower"][1], "{found:#}");
 }
@@ -149,7 +153,7 @@ fn charts_show_the_values_under_the_pointer_and_zoom() {
         let [title, readout] = [0, 1].map(|k| point[k].as_str().unwrap());
         let (given, read) = (hertz(title, 2), hertz(readout, 1));
         // The readout is in whole hertz, of a mark at a hundredth of a pixel: 0.04 Hz on an axis of 3 kHz over 800 pixels.
-        assert!((given - read).abs() < 1.0, "{title} | {readout}");
+        assert!(within((given - read).abs(), 1.0, Reference), "{title} | {readout}");
     }
     assert!(
         !points.is_empty() && found["zoomed"] != found["home"] && found["reset"] == found["home"],

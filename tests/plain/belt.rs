@@ -3,6 +3,7 @@
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::fmt::Write as _;
+use stridor::bounds::{Origin::*, within};
 use stridor::case::Case;
 use stridor::job::{Prepared, Selection, analyse};
 use stridor::results::{RunResults, SweepResult, TransientResult};
@@ -85,7 +86,7 @@ fn critical_values_of_equal_parts_are_those_of_one() {
         };
         // λ splits by the root of the distance: rounding of 1e-16 moves the value by as much, the bracket is of 1e-10.
         let error = (critical.value - exact).abs();
-        assert!(error < 1e-8 * exact, "{trial}: {} {exact}", critical.value);
+        assert!(within(error, 1e-8 * exact, RoundOff), "{trial}: {} {exact}", critical.value);
         let stated = result.value_error(0);
         assert!(stated.is_finite() && stated >= 0.01 * error / exact, "{trial}: {stated:e}");
     }
@@ -109,6 +110,10 @@ fn growth_of_a_contact_that_pulls_needs_no_preload() {
         let found = growth.found.unwrap_or_else(|| panic!("{trial}: {:?}", growth.refused));
         // (ωΔt)²/12 of Newmark's method is 1e-4 of |λ|; the stiffness of the cubic spring changes by 1 % at most while it is small.
         let aim = growth.eigenvalue.re;
-        assert!((found.rate - aim).abs() < 1e-3 * growth.eigenvalue.norm(), "{trial}: {} {aim}", found.rate);
+        assert!(
+            within((found.rate - aim).abs(), 1e-3 * growth.eigenvalue.norm(), Discretisation),
+            "{trial}: {} {aim}",
+            found.rate
+        );
     }
 }

@@ -7,6 +7,7 @@ use rand_chacha::ChaCha8Rng;
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 use std::path::Path;
+use stridor::bounds::{Origin::*, least, within};
 use stridor::case::Case;
 use stridor::error::Result;
 use stridor::job::{Prepared, Selection, analyse, export};
@@ -171,7 +172,7 @@ fn random_systems_have_the_eigenvalues_of_a_dense_solver() {
     }
     assert!(total > 150, "{total} eigenvalues compared");
     println!("{total} eigenvalues, largest relative error {:.1e} at {}", worst.0, worst.1);
-    assert!(worst.0 < 1e-8, "{:.1e} at {}", worst.0, worst.1);
+    assert!(within(worst.0, 1e-8, Tolerance), "{:.1e} at {}", worst.0, worst.1);
 }
 
 #[test]
@@ -192,12 +193,12 @@ fn an_exported_case_has_the_same_modes() {
         let (a, b) = (direct.get::<SteadyResult>().unwrap(), back.get::<SteadyResult>().unwrap());
         for (p, q) in a.state.points.iter().zip(&b.state.points) {
             let scale = a.state.points.iter().map(|p| p.penetration.abs()).fold(0.0, f64::max);
-            assert!((p.penetration - q.penetration).abs() <= 1e-9 * scale, "{name}");
+            assert!(within((p.penetration - q.penetration).abs(), 1e-9 * scale, Tolerance), "{name}");
         }
         let (a, b) = (eigenvalues(&direct), eigenvalues(&back));
         assert!(!a.is_empty() && a.len() == b.len(), "{name}: {} {}", a.len(), b.len());
         for (x, y) in a.iter().zip(&b) {
-            assert!((x - y).norm() <= 1e-9 * x.norm(), "{name}: {x} {y}");
+            assert!(within((x - y).norm(), 1e-9 * x.norm(), Tolerance), "{name}: {x} {y}");
         }
     }
 }
@@ -324,7 +325,8 @@ fn pairs_nearest_to_a_frequency_are_those_of_the_whole_band() {
         expected.truncate(count);
         assert_eq!(found.len(), count);
         for z in &expected {
-            assert!(found.iter().any(|f| (f - z).norm() < 1e-8 * z.norm()), "{hz} {count}: {z} in {found:?}");
+            let off = least(found.iter().map(|f| (f - z).norm()));
+            assert!(within(off, 1e-8 * z.norm(), Tolerance), "{hz} {count}: {z} in {found:?}");
         }
     }
     let few =
@@ -384,7 +386,7 @@ fn systems_without_stiffness_have_errors_of_numbers() {
             assert!(!modes.is_empty());
             for mode in modes {
                 assert!(
-                    mode.backward_error < 1e-10 && mode.eigenvalue_error.is_finite(),
+                    within(mode.backward_error, 1e-10, Tolerance) && mode.eigenvalue_error.is_finite(),
                     "{n} {springs}: {}",
                     mode.errors()
                 );

@@ -5,6 +5,7 @@ use crate::common::samples;
 use crate::python;
 use std::path::Path;
 use std::process::Command;
+use stridor::bounds::{Origin::*, within};
 use stridor::linalg::c64;
 use stridor::measured::Quantity;
 use stridor::measured::uff::{Function, RealShape, Unstated, functions_file, modes_text, read};
@@ -118,27 +119,37 @@ fn universal_files_go_both_ways_with_pyuff() {
     let off: serde_json::Value = serde_json::from_slice(&done.stdout).unwrap();
     let off = |key: &str| off[key].as_f64().unwrap();
     // Six digits in single precision; the frequencies have fewer.
-    assert!(off("points") < 1e-6 && off("shape") < 1e-5 && off("frf") < 1e-12);
+    assert!(
+        within(off("points"), 1e-6, Reference)
+            && within(off("shape"), 1e-5, Reference)
+            && within(off("frf"), 1e-12, Reference)
+    );
     assert!(off("frf_hz") == 0.0 && off("frf_binary_hz") == 0.0 && off("frf_binary") == 0.0);
 
     let bytes = std::fs::read(dir.path().join("theirs.uff")).unwrap();
     let records = read("theirs.uff", &bytes, Unstated { unit: 1.0, quantity: None }).unwrap();
     assert!(records.warnings.is_empty(), "{:?}", records.warnings);
     for (point, exact) in records.points.values().zip(points()) {
-        assert!((0..3).all(|k| (1e3 * point[k] - exact[k]).abs() < 1e-6), "{point:?} {exact:?} in mm");
+        assert!(
+            (0..3).all(|k| within((1e3 * point[k] - exact[k]).abs(), 1e-6, Reference)),
+            "{point:?} {exact:?} in mm"
+        );
     }
     let [real, complex] = &records.modes[..] else { panic!("two modes") };
     assert_eq!((real.frequency_hz, real.damping_ratio), (123.5, Some(0.0125)));
     let size = 20f64.hypot(1500.0);
-    assert!((complex.frequency_hz - size / std::f64::consts::TAU).abs() < 1e-9);
-    assert!((complex.damping_ratio.unwrap() - 20.0 / size).abs() < 1e-12);
+    assert!(within((complex.frequency_hz - size / std::f64::consts::TAU).abs(), 1e-9, Reference));
+    assert!(within((complex.damping_ratio.unwrap() - 20.0 / size).abs(), 1e-12, Reference));
     let turn = [c64::new(1.0, 2.0), c64::new(0.0, 1.0), c64::new(1.0, 0.0)];
     for (k, exact) in shape().iter().enumerate() {
         for axis in 0..3 {
             let (a, b) = (real.shape[&label(k)][axis], complex.shape[&label(k)][axis]);
             // Written with six digits.
-            assert!((a - exact[axis]).norm() <= 5e-6 * exact[axis].abs(), "{k} {axis}: {a}");
-            assert!((b - turn[axis] * exact[axis]).norm() <= 1e-5 * b.norm(), "{k} {axis}: {b}");
+            assert!(within((a - exact[axis]).norm(), 5e-6 * exact[axis].abs(), Reference), "{k} {axis}: {a}");
+            assert!(
+                within((b - turn[axis] * exact[axis]).norm(), 1e-5 * b.norm(), Reference),
+                "{k} {axis}: {b}"
+            );
         }
     }
     // Text with twelve digits (even and uneven), binary (both), text with six. The file is in mm and N: what has no label
@@ -155,7 +166,10 @@ fn universal_files_go_both_ways_with_pyuff() {
         assert_eq!((function.quantity, &function.frequencies_hz), (quantity, &hz));
         assert_eq!((function.excitation, function.response), ((4, [1.0, 0.0, 0.0]), (2, [0.0, 0.0, -1.0])));
         for (value, exact) in function.values.iter().zip(&h) {
-            assert!((1e3 * value - exact).norm() <= tolerance * exact.norm(), "{value} {exact}");
+            assert!(
+                within((1e3 * value - exact).norm(), tolerance * exact.norm(), Reference),
+                "{value} {exact}"
+            );
         }
     }
 }
@@ -209,16 +223,19 @@ fn what_the_program_wrote_is_compared_with_itself() {
     let rows = shapes["modes"].as_array().unwrap();
     assert!(rows.len() > 5);
     for row in rows {
-        assert!(row["mac"].as_f64().unwrap() > 1.0 - 1e-9, "{row}");
-        assert!(row["difference_percent"].as_f64().unwrap().abs() < 1e-3, "{row}");
+        assert!(within(1.0 - row["mac"].as_f64().unwrap(), 1e-9, Reference), "{row}");
+        assert!(within(row["difference_percent"].as_f64().unwrap().abs(), 1e-3, Reference), "{row}");
         assert_eq!(row["measured_damping_ratio"], row["computed_damping_ratio"]);
     }
     // Coordinates of six digits.
-    assert!(shapes["geometry"]["largest_distance_m"].as_f64().unwrap() < 1e-6);
+    assert!(within(shapes["geometry"]["largest_distance_m"].as_f64().unwrap(), 1e-6, Reference));
     let responses = &summary["comparison_frf"][0];
     assert_eq!(responses["name"], "responses");
     let response = &responses["responses"][0];
-    assert!(response["frac"].as_f64().unwrap() > 1.0 - 1e-6 && response["computed"] == "side", "{response}");
+    assert!(
+        within(1.0 - response["frac"].as_f64().unwrap(), 1e-6, Reference) && response["computed"] == "side",
+        "{response}"
+    );
     // What no test is of is not computed; the files are there.
     let sets = summary["mode_sets"].as_array().unwrap();
     assert!(sets.len() == 1 && sets[0]["name"] == "disc");

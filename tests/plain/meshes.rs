@@ -1,6 +1,7 @@
 //! The committed meshes of `meshes/` are sound and are those of the built-in generator.
 
 use std::path::Path;
+use stridor::bounds::{Origin::*, within};
 use stridor::mesh::generate::{PadOnDiscSpec, RigSpec, pad_on_disc, rig, solid_brake};
 use stridor::mesh::{Mesh, diagnose_apart, read};
 
@@ -19,7 +20,7 @@ fn same(committed: &Mesh, generated: &Mesh) {
     assert_eq!(names(committed), names(generated));
     assert_eq!(committed.nodes.len(), generated.nodes.len());
     for (p, q) in committed.nodes.iter().zip(&generated.nodes) {
-        assert!((0..3).all(|k| (p[k] - q[k]).abs() < 1e-9), "{p:?} {q:?}");
+        assert!((0..3).all(|k| within((p[k] - q[k]).abs(), 1e-9, Reference)), "{p:?} {q:?}");
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::closed_forms::{cantilever_roots, free_disc_in_plane, simply_supported_rectangle};
 use crate::common::*;
+use stridor::bounds::{Origin::*, within};
 use stridor::mesh::Cell;
 use stridor::structure::*;
 use stridor::validation::kirchhoff::{Edge, ThinPlate, circular_modes};
@@ -113,7 +114,7 @@ fn annular_plate_clamped_inside() {
         let found = lowest_frequencies(&assembled.structure, exact.len() + 1, 0.0);
         let worst = exact.iter().zip(&found).map(|(e, f)| (f / e - 1.0).abs()).fold(0.0, f64::max);
         println!("b/a {ratio}: {} modes, {} dof, worst {worst:.1e}", exact.len(), assembled.dofs.n_dofs());
-        assert!(worst < 2e-3, "{worst}: {found:?} {exact:?}");
+        assert!(within(worst, 2e-3, Discretisation), "{worst}: {found:?} {exact:?}");
         assert!(found[exact.len()] > 3000.0 * (1.0 - 2e-3));
     }
 }
@@ -176,7 +177,14 @@ fn annular_plate_on_random_meshes() {
         });
         let order = (errors[0] / errors[2]).log2() / 2.0;
         println!("seed {seed}: worst {errors:?}, order {order:.2}");
-        assert!(errors.iter().zip([1.2e-2, 3e-3, 7.5e-4]).all(|(error, bound)| *error < bound), "{errors:?}");
+        assert!(
+            errors.iter().zip([1.2e-2, 3e-3, 7.5e-4]).all(|(error, bound)| within(
+                *error,
+                bound,
+                Discretisation
+            )),
+            "{errors:?}"
+        );
         assert!(order >= 1.9, "{errors:?} {order}");
     }
 }
@@ -193,7 +201,7 @@ fn bending_only_is_the_same_plate_in_any_plane() {
     assert_eq!(full.dofs.n_dofs(), 2 * bending.dofs.n_dofs() + 40);
     let (a, b) =
         (lowest_frequencies(&full.structure, 12, 0.0), lowest_frequencies(&bending.structure, 12, 0.0));
-    assert!(a.iter().zip(&b).all(|(x, y)| (x / y - 1.0).abs() < 1e-8), "{a:?} {b:?}");
+    assert!(a.iter().zip(&b).all(|(x, y)| within((x / y - 1.0).abs(), 1e-8, Tolerance)), "{a:?} {b:?}");
 }
 
 #[test]
@@ -203,9 +211,9 @@ fn free_circular_plate() {
     let assembled = assemble(&model).unwrap();
     let exact = doubled(&circular_modes(&DISC, 0.075, Edge::Free, None, 2500.0));
     let found = lowest_frequencies(&assembled.structure, exact.len() + 6, 100.0);
-    assert!(found[5] <= 1e-3 * found[6], "{found:?}");
+    assert!(within(found[5], 1e-3 * found[6], RoundOff), "{found:?}");
     for (e, f) in exact.iter().zip(&found[6..]) {
-        assert!((f / e - 1.0).abs() < 3e-3, "{found:?} {exact:?}");
+        assert!(within((f / e - 1.0).abs(), 3e-3, Discretisation), "{found:?} {exact:?}");
     }
 }
 
@@ -231,7 +239,7 @@ fn in_plane_modes_of_a_free_disc() {
     println!("{exact:?}\n{found:?}");
     assert!(found[2] < 1.0);
     for (e, f) in exact.iter().zip(&found[3..]) {
-        assert!((f / e - 1.0).abs() < 5e-3, "{found:?} {exact:?}");
+        assert!(within((f / e - 1.0).abs(), 5e-3, Discretisation), "{found:?} {exact:?}");
     }
 }
 
@@ -260,7 +268,10 @@ fn square_plates() {
             let errors: Vec<f64> =
                 exact.iter().zip(&found[skip..]).map(|(e, f)| f / scale / e - 1.0).collect();
             println!("{name} {quadrilaterals}: {errors:?}");
-            assert!(errors.iter().all(|e| e.abs() < 6e-3), "{name} {quadrilaterals}: {errors:?}");
+            assert!(
+                errors.iter().all(|e| within(e.abs(), 6e-3, Discretisation)),
+                "{name} {quadrilaterals}: {errors:?}"
+            );
         }
     }
 }
@@ -283,7 +294,7 @@ fn nafems_thin_plates() {
         let found = lowest_frequencies(&assemble(&model).unwrap().structure, skip + exact.len(), shift);
         let errors: Vec<f64> = exact.iter().zip(&found[skip..]).map(|(e, f)| f / e - 1.0).collect();
         println!("{errors:?}");
-        assert!(errors.iter().all(|e| e.abs() < 0.01), "{errors:?} {found:?}");
+        assert!(errors.iter().all(|e| within(e.abs(), 0.01, Reference)), "{errors:?} {found:?}");
     }
 }
 
@@ -304,7 +315,7 @@ fn cantilever_bar_bends_stretches_and_twists() {
         ..Model::default()
     };
     let assembled = assemble(&model).unwrap();
-    assert!((assembled.total_mass / (7850.0 * 1e-4 * l) - 1.0).abs() < 1e-12);
+    assert!(within((assembled.total_mass / (7850.0 * 1e-4 * l) - 1.0).abs(), 1e-12, RoundOff));
     let tau = std::f64::consts::TAU;
     let (e, rho) = (210e9_f64, 7850.0_f64);
     let mut exact: Vec<f64> = [section.inertia_1, section.inertia_2]
@@ -320,7 +331,10 @@ fn cantilever_bar_bends_stretches_and_twists() {
     exact.sort_by(f64::total_cmp);
     exact.truncate(7);
     let found = lowest_frequencies(&assembled.structure, 7, 0.0);
-    assert!(exact.iter().zip(&found).all(|(x, f)| (f / x - 1.0).abs() < 5e-4), "{exact:?} {found:?}");
+    assert!(
+        exact.iter().zip(&found).all(|(x, f)| within((f / x - 1.0).abs(), 5e-4, Discretisation)),
+        "{exact:?} {found:?}"
+    );
 }
 
 /// A square plate simply supported all round buckles at k = 4: N = 4 π² D / b² (Timoshenko & Gere).
@@ -352,7 +366,7 @@ fn square_plate_buckles_at_four() {
     let critical = smallest_buckling_load(&assembled.structure.stiffness, &k_sigma);
     let rigidity = 210e9 * thin.thickness.powi(3) / (12.0 * 0.91);
     let k = critical / (std::f64::consts::PI.powi(2) * rigidity);
-    assert!((k - 4.0).abs() < 0.02, "{k}");
+    assert!(within((k - 4.0).abs(), 0.02, Discretisation), "{k}");
 }
 
 /// A plate that starts along a real mode stays along it, and its amplitude follows the scheme's recursion: from the
@@ -385,7 +399,10 @@ fn a_plate_vibrates_in_time_as_its_modes_say() {
                 let amplitude = dot(u, shape) / dot(shape, shape);
                 let aside = u.iter().zip(shape).map(|(u, x)| (u - amplitude * x).abs()).fold(0.0, f64::max);
                 let largest = 1e-6 * shape.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
-                assert!(aside < 1e-7 * largest, "mode {mode}: {aside:e} beside {largest:e}");
+                assert!(
+                    within(aside, 1e-7 * largest, Tolerance),
+                    "mode {mode}: {aside:e} beside {largest:e}"
+                );
                 // The same for one degree of freedom: [u, v, a] in units of the step.
                 let w = (omega * step).powi(2);
                 let Scheme { alpha_m, alpha_f, beta, gamma } = scheme;
@@ -396,12 +413,12 @@ fn a_plate_vibrates_in_time_as_its_modes_say() {
                         / (1.0 - alpha_m + w * (1.0 - alpha_f) * beta);
                     (x, v, a) = (xp + beta * next, vp + gamma * next, next);
                 }
-                assert!((amplitude - x).abs() < 1e-13, "mode {mode}: {amplitude:e} {x:e}");
+                assert!(within((amplitude - x).abs(), 1e-13, Tolerance), "mode {mode}: {amplitude:e} {x:e}");
                 // cos(2.5 π) = 0.
                 amplitude.abs()
             });
             let order = (errors[0] / errors[1]).log2();
-            assert!((order - 2.0).abs() < 0.1, "mode {mode}, {scheme:?}: {order}");
+            assert!(within((order - 2.0).abs(), 0.1, Discretisation), "mode {mode}, {scheme:?}: {order}");
         }
     }
 }

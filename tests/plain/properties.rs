@@ -3,6 +3,7 @@
 
 use std::fmt::Write;
 use std::path::Path;
+use stridor::bounds::{Origin::*, within};
 use stridor::case::Case;
 use stridor::job::{Prepared, Selection, analyse};
 use stridor::linalg::c64;
@@ -202,8 +203,12 @@ fn assert_same(what: &str, a: &[Value], b: &[Value]) {
         let nearest = b.iter().min_by(|(b, _), (c, _)| (a - b).norm().total_cmp(&(a - c).norm()));
         let (b, other) = nearest.expect("eigenvalues");
         let off = (a - b).norm() / a.norm();
-        assert!(*error < 1e-6, "{what}: {a} with an error of {error:e}");
-        assert!(off < error + other, "{what}: {a} and {b} differ by {off:e}; expected {:e}", error + other);
+        assert!(within(*error, 1e-6, Tolerance), "{what}: {a} with an error of {error:e}");
+        assert!(
+            within(off, error + other, Stated),
+            "{what}: {a} and {b} differ by {off:e}; expected {:e}",
+            error + other
+        );
     }
 }
 

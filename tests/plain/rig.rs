@@ -4,6 +4,7 @@ use faer::Mat;
 use faer::linalg::solvers::Solve;
 use std::f64::consts::TAU;
 use std::path::PathBuf;
+use stridor::bounds::{Origin::*, within};
 use stridor::case::Case;
 use stridor::equilibrium::{SteadyOptions, directions, linearize, solve_steady};
 use stridor::job::{Prepared, Selection, analyse};
@@ -81,7 +82,7 @@ fn full_order_eigenvalues_of_the_rig_agree_with_a_dense_solver() {
     for mode in &modes.modes {
         let l = mode.eigenvalue;
         let nearest = dense.iter().map(|d| (d - l).norm() / l.norm()).fold(f64::INFINITY, f64::min);
-        assert!(nearest < 1e-8, "{l}: {nearest:e}");
+        assert!(within(nearest, 1e-8, Tolerance), "{l}: {nearest:e}");
     }
 }
 
@@ -162,7 +163,11 @@ fn sensitivities_of_the_rig_equal_differences_of_reruns() {
                     mode.eigenvalue.im / TAU,
                     value * exact.norm()
                 );
-                assert!(error <= 1e-6 + noise, "{path} at {}: {rate} {exact}, {error:.1e}", mode.eigenvalue);
+                assert!(
+                    within(error, 1e-6 + noise, Reference),
+                    "{path} at {}: {rate} {exact}, {error:.1e}",
+                    mode.eigenvalue
+                );
             }
         }
         for thing in found.modes.iter().flat_map(|m| &m.best) {
@@ -173,7 +178,7 @@ fn sensitivities_of_the_rig_equal_differences_of_reruns() {
                 thing.kind, thing.amount, thing.predicted, done
             );
             // A whole gram is beyond first order; a thousandth of it, really mounted, is not.
-            assert!(done.re < 0.0 && slope_error < 1e-3, "{thing:?}");
+            assert!(done.re < 0.0 && within(slope_error, 1e-3, Theory), "{thing:?}");
         }
     }
 }
@@ -208,7 +213,7 @@ fn components_of_directions_that_are_zero_have_derivatives() {
                 let exact = if rate.path == across { exact } else { c64::new(0.0, 0.0) };
                 let error = (rate.rate - exact).norm();
                 assert!(
-                    error <= 1e-5 * exact.norm() + noise,
+                    within(error, 1e-5 * exact.norm() + noise, Reference),
                     "{direction:?} {}: {} {exact}",
                     rate.path,
                     rate.rate

@@ -3,6 +3,7 @@
 use crate::common::*;
 use nalgebra::{Matrix3, SVector, Vector3};
 use std::f64::consts::{PI, TAU};
+use stridor::bounds::{Origin::*, within};
 use stridor::linalg::random::Random;
 use stridor::mesh::generate::structured_box;
 use stridor::mesh::{Cell, CellKind, Mesh};
@@ -84,7 +85,7 @@ fn patch_test_of_every_kind() {
         // Round-off of sums of stiffnesses; ten times what was seen.
         let bound = 1e-13;
         assert!(
-            rest < bound && (found / energy - 1.0).abs() < bound,
+            within(rest, bound, RoundOff) && within((found / energy - 1.0).abs(), bound, RoundOff),
             "{kind:?} curved {curved}: {rest:e} {found} {energy}"
         );
     }
@@ -107,21 +108,24 @@ fn one_element_has_rank_and_mass() {
         let values = k.self_adjoint_eigenvalues(faer::Side::Lower).unwrap();
         let largest = values[values.len() - 1];
         assert_eq!(values.len(), 3 * kind.n_nodes());
-        assert!(values[5].abs() < 1e-13 * largest && values[6] > 1e-4 * largest, "{kind:?}: {values:?}");
+        assert!(
+            within(values[5].abs(), 1e-13 * largest, RoundOff) && values[6] > 1e-4 * largest,
+            "{kind:?}: {values:?}"
+        );
         let m = assembled.structure.mass.to_dense();
         for rigid in assembled.dofs.rigid_body_vectors([0.1, -0.2, 0.3]).iter().take(3) {
             let all = (0..rigid.len()).flat_map(|i| (0..rigid.len()).map(move |j| (i, j)));
             let mass: f64 = all.map(|(i, j)| rigid[i] * m[(i, j)] * rigid[j]).sum();
-            assert!((mass / assembled.total_mass - 1.0).abs() < 1e-13, "{kind:?}");
+            assert!(within((mass / assembled.total_mass - 1.0).abs(), 1e-13, RoundOff), "{kind:?}");
         }
         for rigid in assembled.dofs.rigid_body_vectors([0.1, -0.2, 0.3]) {
             for i in 0..rigid.len() {
                 let force: f64 = (0..rigid.len()).map(|j| k[(i, j)] * rigid[j]).sum();
-                assert!(force.abs() < 1e-13 * largest, "{kind:?}: {force:e}");
+                assert!(within(force.abs(), 1e-13 * largest, RoundOff), "{kind:?}: {force:e}");
             }
         }
         if kind.table().name.contains("hexahedron") {
-            assert!((assembled.total_mass / (7850.0 * 0.015) - 1.0).abs() < 1e-14);
+            assert!(within((assembled.total_mass / (7850.0 * 0.015) - 1.0).abs(), 1e-14, RoundOff));
         }
     }
 }
@@ -203,7 +207,7 @@ fn nafems_simply_supported_solid_plate() {
         let errors: Vec<f64> = published.iter().zip(&found[3..]).map(|(e, f)| f / e - 1.0).collect();
         println!("{kind:?}: {errors:.4?}");
         assert!(found[2] < 0.05, "{kind:?}: {found:?}");
-        assert!(errors.iter().all(|e| e.abs() < 0.06), "{kind:?}: {errors:?}");
+        assert!(errors.iter().all(|e| within(e.abs(), 0.06, Discretisation)), "{kind:?}: {errors:?}");
     }
 }
 
@@ -220,7 +224,7 @@ fn a_cantilever_of_hexahedra_is_that_of_calculix() {
     let found = lowest_frequencies(&assemble(&model).unwrap().structure, published.len(), 0.0);
     for (published, found) in published.iter().zip(&found) {
         // Five digits are published.
-        assert!((found / published - 1.0).abs() < 5e-5, "{found} {published}");
+        assert!(within((found / published - 1.0).abs(), 5e-5, Reference), "{found} {published}");
     }
 }
 
@@ -243,12 +247,12 @@ fn geometric_stiffness_of_a_stretched_bar() {
             .map(|(i, j)| moved[i] * k[(i, j)] * moved[j])
             .sum();
         let right = 210e9 * strain * 0.48 * 1.0;
-        assert!((energy / right - 1.0).abs() < 1e-11, "{kind:?}: {energy} {right}");
+        assert!(within((energy / right - 1.0).abs(), 1e-11, RoundOff), "{kind:?}: {energy} {right}");
         let rigid = values(&assembled.dofs, &mesh.nodes, |_| Vector3::new(0.0, 0.0, 1.0));
         let largest = (0..n).fold(0.0_f64, |m, i| m.max(k[(i, i)].abs()));
         for i in 0..n {
             let force: f64 = (0..n).map(|j| k[(i, j)] * rigid[j]).sum();
-            assert!(force.abs() < 1e-11 * largest, "{kind:?}: {force:e} {largest:e}");
+            assert!(within(force.abs(), 1e-11 * largest, RoundOff), "{kind:?}: {force:e} {largest:e}");
         }
     }
 }
@@ -267,6 +271,9 @@ fn a_slender_bar_bends_without_locking() {
         let found = lowest_frequencies(&assemble(&model).unwrap().structure, 2, 0.0);
         println!("{kind:?}: {:?}", found.iter().map(|f| f / exact - 1.0).collect::<Vec<_>>());
         // Shear and rotary inertia lower it by some (h/l)²; the clamp holds the width, which raises it; cells cut tetrahedra unevenly.
-        assert!(found.iter().all(|f| (f / exact - 1.0).abs() < 0.012), "{kind:?}: {found:?} {exact}");
+        assert!(
+            found.iter().all(|f| within((f / exact - 1.0).abs(), 0.012, Discretisation)),
+            "{kind:?}: {found:?} {exact}"
+        );
     }
 }

@@ -1,11 +1,12 @@
 //! Numbers and machines at their limits: the binary answers with a result or with a sentence and an exit code.
 
-#[cfg(target_os = "linux")]
 use crate::program::limit_memory;
 use crate::program::{command, folder_with, run, said};
 use std::f64::consts::TAU;
 use std::path::Path;
 use std::process::Output;
+#[cfg(target_os = "linux")]
+use stridor::bounds::{Origin::*, within};
 
 fn stridor(folder: &Path, arguments: &[&str]) -> Output {
     run(&mut command(folder, arguments))
@@ -98,7 +99,7 @@ fn a_stiffer_penalty_moves_no_squeal_mode() {
         said(&output, 0);
         let summary: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
         let load = summary["steady_sliding"]["pairs"][0]["normal_force_n"].as_f64().unwrap();
-        assert!((load - 10.0).abs() < 1e-8, "{stiffness}: {load} N");
+        assert!(within((load - 10.0).abs(), 1e-8, Tolerance), "{stiffness}: {load} N");
         let modes = summary["cea"]["eigenvalues"].as_array().unwrap().clone();
         let number = |mode: &serde_json::Value, key: &str| mode[key].as_f64().unwrap();
         let keys = ["frequency_hz", "growth_rate", "eigenvalue_error"];
@@ -111,14 +112,17 @@ fn a_stiffer_penalty_moves_no_squeal_mode() {
         assert_eq!(stiffer.len(), reference.len());
         for ([hz, growth, error], [hz_before, growth_before, _]) in stiffer.iter().zip(&reference) {
             assert!(
-                (hz - hz_before).abs() < 1e-5 * hz_before.max(1.0),
+                within((hz - hz_before).abs(), 1e-5 * hz_before.max(1.0), Theory),
                 "{stiffness}: {hz} Hz, {hz_before} Hz"
             );
             let size = (TAU * hz).hypot(*growth);
             // The one that diverges follows the penalty longest, by 3e-4 here: as 1/k.
             let part = if *hz > 1.0 { 1e-5 } else { 1e-3 };
             let bound = (part * growth_before.abs().max(1.0)).max(error * size);
-            assert!((growth - growth_before).abs() < bound, "{stiffness}: {growth}, {growth_before} 1/s");
+            assert!(
+                within((growth - growth_before).abs(), bound, Theory),
+                "{stiffness}: {growth}, {growth_before} 1/s"
+            );
         }
     }
     let text = said(&run("1e18"), 1);
@@ -294,7 +298,10 @@ fn the_peak_of_memory_is_predicted() {
     let _ = child.try_wait();
     assert_eq!(status, 0);
     let measured = usage.ru_maxrss as f64 / 1024.0;
-    assert!((expected / measured - 1.0).abs() < 0.3, "expected {expected} MiB, measured {measured} MiB");
+    assert!(
+        within((expected / measured - 1.0).abs(), 0.3, Theory),
+        "expected {expected} MiB, measured {measured} MiB"
+    );
 
     let mut small = command(folder.path(), &["modes", "case.toml", "-q", "--threads", "1"]);
     limit_memory(&mut small, 220);

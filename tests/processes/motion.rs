@@ -2,6 +2,7 @@
 
 use crate::program::{CASE, folder_with, said};
 use crate::small_rig::{stridor, text};
+use stridor::bounds::{Origin::*, within};
 use stridor::linalg::random::Random;
 use stridor::numbers::significant;
 
@@ -77,7 +78,10 @@ fn forces_beyond_the_load_and_large_deflections_are_named() {
         }
         if hold == "load" {
             // ΣN is the load in every step, to the accuracy of Newton's method.
-            assert!(normal.iter().all(|force| (force / load - 1.0).abs() < 1e-6), "{context}");
+            assert!(
+                normal.iter().all(|force| within((force / load - 1.0).abs(), 1e-6, Tolerance)),
+                "{context}"
+            );
         }
 
         // Three rings of eight nodes, the inner one held; triangles that meet at every second radius make two motions of each ring.
@@ -94,7 +98,7 @@ fn forces_beyond_the_load_and_large_deflections_are_named() {
             let shown: f64 =
                 after.split(' ').next().and_then(|number| number.parse().ok()).expect("a number");
             // Three decimals of a millimetre are shown.
-            assert!((1e-3 * shown - deflection).abs() < 1e-6, "{deflection}: {context}");
+            assert!(within((1e-3 * shown - deflection).abs(), 1e-6, Reference), "{deflection}: {context}");
         }
         beyond += usize::from(warned);
         bent += usize::from(bends);

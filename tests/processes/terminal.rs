@@ -3,6 +3,7 @@
 use crate::small_rig::{RIG, folder_with, stridor, text};
 use std::path::Path;
 use std::process::{Command, Output};
+use stridor::bounds::{Origin::*, within};
 use tempfile::TempDir;
 
 /// What `check` prints of the small rig with one line of it replaced.
@@ -63,7 +64,7 @@ fn check_refuses_contacts_that_cannot_carry_load() {
         let summary: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
         summary["steady_sliding"]["pairs"][0]["normal_force_n"].as_f64().expect("a force")
     });
-    assert!(loads.iter().all(|load| (load / 50.0 - 1.0).abs() < 1e-9), "{loads:?}");
+    assert!(loads.iter().all(|load| within((load / 50.0 - 1.0).abs(), 1e-9, Tolerance)), "{loads:?}");
     let refused = run("load = \"50 N\"\n");
     assert_eq!(refused.status.code(), Some(2));
     let message = text(&refused.stderr);

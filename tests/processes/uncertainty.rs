@@ -6,6 +6,7 @@ use serde_json::Value;
 use std::path::Path;
 use std::process::Stdio;
 use std::time::{Duration, Instant};
+use stridor::bounds::{Origin::*, within};
 use stridor::linalg::c64;
 use stridor::results::record::{Entry, entries};
 
@@ -43,11 +44,11 @@ fn the_probability_of_one_scalar_is_that_of_its_distribution() {
     let found = summary(&at.join("out"));
     // A Latin hypercube has one sample in each of 2000 intervals: one of them holds the limit.
     let share = found["probability"].as_f64().expect("a number");
-    assert!((share - 0.4375).abs() <= 1.0 / 2000.0, "{share}");
+    assert!(within((share - 0.4375).abs(), 1.0 / 2000.0, RandomSample), "{share}");
     assert_eq!(found["method"]["kind"], "reduced");
     let grows: f64 =
         found["modes"].as_array().unwrap().iter().map(|mode| mode["probability"].as_f64().unwrap()).sum();
-    assert!((grows - share).abs() < 1e-12, "one of the two modes grows: {grows}");
+    assert!(within((grows - share).abs(), 1e-12, RoundOff), "one of the two modes grows: {grows}");
     let mut table = csv::Reader::from_path(at.join("out/uncertainty_mu.csv")).expect("a table");
     let headings: Vec<String> = table.headers().expect("headings").iter().map(String::from).collect();
     assert_eq!(headings[..3], ["sample", "contact.belt.friction.mu0", "growth_rate [1/s]"]);
@@ -60,10 +61,10 @@ fn the_probability_of_one_scalar_is_that_of_its_distribution() {
         // At the limit λ moves as the root of the error of the matrices.
         let error = 1e-14 / b.abs().sqrt();
         if b > 0.0 {
-            assert!((growth - exact.im).abs() < error, "{mu}: {growth}, {}", exact.im);
-            assert!((hz * std::f64::consts::TAU - exact.re).abs() < error, "{mu}: {hz}");
+            assert!(within((growth - exact.im).abs(), error, RoundOff), "{mu}: {growth}, {}", exact.im);
+            assert!(within((hz * std::f64::consts::TAU - exact.re).abs(), error, RoundOff), "{mu}: {hz}");
         } else {
-            assert!(growth.abs() < error, "{mu}: {growth}");
+            assert!(within(growth.abs(), error, RoundOff), "{mu}: {growth}");
         }
         count += 1;
     }
@@ -75,7 +76,7 @@ fn the_probability_of_one_scalar_is_that_of_its_distribution() {
     std::fs::write(at.join("case.toml"), block(&normal)).expect("a case");
     study(at, "out", &[], 0);
     let share = summary(&at.join("out"))["probability"].as_f64().expect("a number");
-    assert!((share - 0.308_538).abs() <= 1.0 / 2000.0, "{share}");
+    assert!(within((share - 0.308_538).abs(), 1.0 / 2000.0, RandomSample), "{share}");
 }
 
 /// μ > (1 + k_t²/N²m²)/2 over k_t from 0.2 to 1 N/m and μ from 0.4 to 1: P = (1/2 − E(k_t²)/2)/0.6, E(k_t²) = 0.992/2.4.
@@ -91,7 +92,10 @@ fn the_probability_of_two_scalars_is_an_area() {
     let found = summary(&at.join("out"));
     let (share, [low, high], exact) =
         (found["probability"].as_f64().unwrap(), limits(&found), (0.5 - 0.496 / 2.4) / 0.6);
-    assert!((share - exact).abs() < 0.02 && low < exact && exact < high, "{share} [{low}, {high}] {exact}");
+    assert!(
+        within((share - exact).abs(), 0.02, RandomSample) && low < exact && exact < high,
+        "{share} [{low}, {high}] {exact}"
+    );
     assert!(high - low < 0.064 && found["method"]["kind"] == "whole" && found["undecided"] == 0, "{found}");
     let correlation = |k: usize| found["scalars"][k]["correlation"].as_f64().expect("a number");
     assert!(found["scalars"][0]["name"] == "kt" && correlation(0) < -0.2 && correlation(1) > 0.5, "{found}");

@@ -1,6 +1,7 @@
 //! What every part of stridor needs: errors that carry data ([`error`]), progress of long work ([`progress`]), numbers as text
-//! ([`numbers`]), input files of a bounded size ([`input`]), the memory that is left ([`memory`]), memory in large pages ([`pages`]) and connected components ([`connected`]).
+//! ([`numbers`]), input files of a bounded size ([`input`]), the memory that is left ([`memory`]), memory in large pages ([`pages`]), connected components ([`connected`]) and, for tests, comparisons with the origin of their bounds ([`bounds`]).
 
+pub mod bounds;
 pub mod connected;
 pub mod error;
 pub mod input;

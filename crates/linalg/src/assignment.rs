@@ -51,6 +51,7 @@ pub fn least_cost(cost: &[Vec<f64>], columns: usize) -> Vec<(usize, usize)> {
 mod tests {
     use super::*;
     use crate::random::Random;
+    use stridor_base::bounds::{Origin::*, within};
 
     #[test]
     fn the_least_cost_is_that_of_the_best_permutation() {
@@ -75,11 +76,11 @@ mod tests {
             let pairs = least_cost(&cost, columns);
             assert_eq!(pairs.len(), rows);
             let total: f64 = pairs.iter().map(|(i, j)| cost[*i][*j]).sum();
-            assert!((total - best(&cost, 0, &mut vec![false; columns])).abs() < 1e-12);
+            assert!(within((total - best(&cost, 0, &mut vec![false; columns])).abs(), 1e-12, RoundOff));
             let turned: Vec<Vec<f64>> =
                 (0..columns).map(|j| (0..rows).map(|i| cost[i][j]).collect()).collect();
             let back: f64 = least_cost(&turned, rows).iter().map(|(j, i)| cost[*i][*j]).sum();
-            assert!((total - back).abs() < 1e-12);
+            assert!(within((total - back).abs(), 1e-12, RoundOff));
         }
     }
 }

@@ -442,11 +442,11 @@ fn resize(a: &mut Mat<f64>, n: usize, columns: usize) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::bounds::within;
     use super::super::factor::SymbolicFactor;
     use super::super::samples;
     use super::super::sparse::add_scaled;
     use super::*;
+    use stridor_base::bounds::{Origin::*, within};
 
     #[test]
     fn relation_and_orthogonality_hold() {
@@ -471,7 +471,7 @@ mod tests {
         residual -= Mat::<f64>::identity(len + width, len + width);
         // ε for each of the products that a basis vector is projected by, one with every vector before it.
         let bound = 10.0 * (len + width) as f64 * f64::EPSILON;
-        assert!(within(residual.norm_max(), bound, "round-off of the projections"), "VᵀMV = I");
+        assert!(within(residual.norm_max(), bound, RoundOff), "VᵀMV = I");
         let mut r = lanczos.mass_times(v.subcols(0, len));
         factor.solve_in_place(r.as_mut());
         let h = lanczos.projected.as_ref().submatrix(0, 0, len, len);
@@ -479,6 +479,6 @@ mod tests {
         let last = r.as_mut().subcols_mut(len - tail, tail);
         combine(last, Accum::Add, v.subcols(len, width), lanczos.coupling.as_ref(), -1.0);
         let error = lengths(&gram(r.as_ref(), lanczos.mass_times(r.as_ref()).as_ref()));
-        assert!(error.iter().all(|e| *e < 1e-12 * h.norm_max()), "AV = VH + XR");
+        assert!(error.iter().all(|e| within(*e, 1e-12 * h.norm_max(), RoundOff)), "AV = VH + XR");
     }
 }

@@ -16,8 +16,7 @@
 //! * [`random`]: start vectors that are the same in every run.
 //! * [`multivector`]: products of multivectors, such as a set of modes.
 //! * [`toar`]: eigenpairs of a quadratic problem nearest a shift, by two-level Arnoldi.
-//! * [`bounds`], [`extended`], [`samples`]: for tests; comparisons with the origin of their bounds, linear systems solved with twice the
-//!   digits, matrices with known eigenvalues.
+//! * [`extended`], [`samples`]: for tests; linear systems solved with twice the digits, matrices with known eigenvalues.
 //! * [`unsymmetric`]: small dense eigenproblems that are not symmetric.
 
 #[cfg(doctest)]
@@ -25,7 +24,6 @@
 struct Readme;
 
 pub mod assignment;
-pub mod bounds;
 pub mod dense;
 pub mod eigenpairs;
 pub mod extended;

@@ -123,22 +123,23 @@ mod tests {
     use super::super::samples;
     use super::super::sparse::add_scaled;
     use super::*;
+    use stridor_base::bounds::{Origin::*, within};
 
     #[test]
     fn rayleigh_damping_is_recognised_below_a_few_dashpots() {
         let (k, m) = samples::plate(6, true);
         let rayleigh = add_scaled(&[(3.0, &m), (2e-6, &k)]);
         let split = Proportional::split(&rayleigh, &m, &k);
-        assert!(split.rest.is_none() && (split.mass_factor - 3.0).abs() < 1e-9);
-        assert!((split.stiffness_factor - 2e-6).abs() < 1e-15);
+        assert!(split.rest.is_none() && within((split.mass_factor - 3.0).abs(), 1e-9, RoundOff));
+        assert!(within((split.stiffness_factor - 2e-6).abs(), 1e-15, RoundOff));
         let n = k.ncols();
         let ground = samples::from_dense(
             faer::Mat::from_fn(n, n, |i, j| if i == j && i % 25 == 0 { 7.0 } else { 0.0 }).as_ref(),
         );
         let split = Proportional::split(&add_scaled(&[(1.0, &rayleigh), (1.0, &ground)]), &m, &k);
-        assert!((split.mass_factor - 3.0).abs() < 1e-8, "{}", split.mass_factor);
+        assert!(within((split.mass_factor - 3.0).abs(), 1e-8, RoundOff), "{}", split.mass_factor);
         let rest = split.rest.unwrap().to_dense();
-        assert!((rest - ground.to_dense()).norm_max() < 1e-6);
+        assert!(within((rest - ground.to_dense()).norm_max(), 1e-6, RoundOff));
     }
 
     #[test]
@@ -147,7 +148,7 @@ mod tests {
         let lossy = add_scaled(&[(0.01, &k)]);
         let split = Proportional::split(&lossy, &m, &k);
         assert!(split.rest.is_none() && split.mass_factor == 0.0);
-        assert!((split.stiffness_factor - 0.01).abs() < 1e-14);
+        assert!(within((split.stiffness_factor - 0.01).abs(), 1e-14, RoundOff));
         let other = samples::random_definite(k.ncols(), 4);
         let split = Proportional::split(&other, &m, &k);
         assert!(split.mass_factor == 0.0 && split.stiffness_factor == 0.0 && split.rest.is_some());

@@ -276,6 +276,7 @@ mod tests {
     use super::super::samples;
     use super::super::sparse::times;
     use super::*;
+    use stridor_base::bounds::{Origin::*, within};
 
     #[test]
     fn products_equal_those_of_each_matrix() {
@@ -287,7 +288,7 @@ mod tests {
             SharedPattern::new(&given).times(x.as_ref(), &mut products);
             assert_eq!(products.len(), count);
             for (product, a) in products.iter().zip(given) {
-                assert!((product - times(a, x.as_ref())).norm_max() < 1e-13);
+                assert!(within((product - times(a, x.as_ref())).norm_max(), 1e-13, RoundOff));
             }
         }
     }
@@ -305,10 +306,11 @@ mod tests {
             products
         };
         assert_eq!(products(&shared), products(&owned));
-        assert!(
-            (&products(&shared)[1] - times(&stiffness, x.as_ref())).norm_max()
-                < 1e-12 * stiffness.to_dense().norm_max()
-        );
+        assert!(within(
+            (&products(&shared)[1] - times(&stiffness, x.as_ref())).norm_max(),
+            1e-12 * stiffness.to_dense().norm_max(),
+            RoundOff
+        ));
     }
 
     #[test]
@@ -322,7 +324,7 @@ mod tests {
         merged.multiply(&mut [(0, first), (1, second), (2, third)], x.as_ref());
         for (y, (begin, a)) in out.iter().zip([(0, &a), (1, &b), (2, &c)]) {
             let expected = times(a, x.subcols(begin, 3 - begin));
-            assert!((y - expected).norm_max() < 1e-13 * a.to_dense().norm_max() * 301.0);
+            assert!(within((y - expected).norm_max(), 1e-13 * a.to_dense().norm_max() * 301.0, RoundOff));
         }
     }
 }

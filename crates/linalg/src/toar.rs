@@ -282,6 +282,7 @@ mod tests {
     use super::super::random::Random;
     use super::*;
     use faer::linalg::solvers::Solve;
+    use stridor_base::bounds::{Origin::*, within};
 
     /// Dense M, C, K at a shift.
     struct Dense {
@@ -339,12 +340,15 @@ mod tests {
             assert_eq!(found.values.len(), count);
             for (j, value) in found.values.iter().enumerate() {
                 let error = expected.iter().map(|e| (e - value).norm()).fold(f64::INFINITY, f64::min);
-                assert!(error < 1e-9, "n = {n}: {value} is off by {error:e}");
+                assert!(within(error, 1e-9, Tolerance), "n = {n}: {value} is off by {error:e}");
                 let farthest = (expected[count - 1] - shift).norm();
-                assert!((value - shift).norm() < farthest * (1.0 + 1e-9), "not among the nearest");
+                assert!(
+                    within((value - shift).norm() - farthest, 1e-9 * farthest, Tolerance),
+                    "not among the nearest"
+                );
                 let x = found.vectors.subcols(j, 1);
                 let q = Mat::from_fn(n, n, |i, l| value * value * m[(i, l)] + value * c[(i, l)] + k[(i, l)]);
-                assert!((q * x).norm_l2() < 1e-9);
+                assert!(within((q * x).norm_l2(), 1e-9, Tolerance));
             }
         }
     }
@@ -371,8 +375,12 @@ mod tests {
             let k = diagonal(&|j| shift * shift - square[j] * turn(j));
             let found = toar(&Dense::new(&m, &c, &k, shift), shift, 10.0, (8, f64::INFINITY), 1e-12).unwrap();
             assert!(found.values.len() >= 8.min(2 * n));
-            let last = (square[3].re.sqrt()) * (1.0 + 1e-9);
-            assert!(found.values.iter().all(|z| (z - shift).norm() < last), "{:?}", found.values);
+            let last = square[3].re.sqrt();
+            assert!(
+                found.values.iter().all(|z| within((z - shift).norm() - last, 1e-9 * last, Tolerance)),
+                "{:?}",
+                found.values
+            );
         }
     }
 
@@ -395,9 +403,9 @@ mod tests {
         let found = toar(&Dense::new(&m, &zero, &k, shift), shift, 2e3, (9, f64::INFINITY), 1e-12).unwrap();
         for value in &found.values {
             let nearest = (1..=n).map(|j| (omega(j) - value.im).abs()).fold(f64::INFINITY, f64::min);
-            assert!(nearest < 1e-8 && value.re.abs() < 1e-8, "{value}");
+            assert!(within(nearest, 1e-8, Tolerance) && within(value.re.abs(), 1e-8, Tolerance), "{value}");
         }
-        assert!((found.values[0].im - omega(20)).abs() < 1e-8);
+        assert!(within((found.values[0].im - omega(20)).abs(), 1e-8, Tolerance));
     }
 
     /// Two lightly damped modes within the reach, and beyond it `n` − 2 overdamped ones all but equal, which converge one by one.
@@ -422,7 +430,7 @@ mod tests {
             for square in [1.0f64, 1.1] {
                 let exact = c64::new(-0.005, (square - 0.005f64.powi(2)).sqrt());
                 let error = found.values.iter().map(|z| (z - exact).norm()).fold(f64::INFINITY, f64::min);
-                assert!(error < 1e-12, "{n}: {error:e}");
+                assert!(within(error, 1e-12, Tolerance), "{n}: {error:e}");
             }
             assert!(found.solves < 150, "{} solves", found.solves);
         }

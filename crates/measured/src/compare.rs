@@ -127,6 +127,7 @@ pub fn pair(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use stridor_base::bounds::{Origin::*, within};
     use stridor_linalg::dense::mac;
     use stridor_linalg::random::Random;
 
@@ -141,19 +142,27 @@ mod tests {
         let (a, b) = (vector(9), vector(9));
         let shape: Vec<c64> = vector(9).iter().zip(vector(9)).map(|(re, im)| c64::new(*re, im)).collect();
         let one = subspace_mac(&shape, std::slice::from_ref(&a));
-        assert!((one - mac(&complex(&a), &shape)).abs() < 1e-15);
+        assert!(within((one - mac(&complex(&a), &shape)).abs(), 1e-15, RoundOff));
         let turned: Vec<c64> = shape.iter().map(|v| v * c64::from_polar(3.0, 1.1)).collect();
-        assert!((subspace_mac(&turned, &[a.iter().map(|v| -7.0 * v).collect()]) - one).abs() < 1e-14);
+        assert!(within(
+            (subspace_mac(&turned, &[a.iter().map(|v| -7.0 * v).collect()]) - one).abs(),
+            1e-14,
+            RoundOff
+        ));
         let double = subspace_mac(&shape, &[a.clone(), b.clone()]);
         for angle in [0.3f64, 1.0, 2.5] {
             let (sin, cos) = angle.sin_cos();
             let mix = |p: f64, q: f64| a.iter().zip(&b).map(|(a, b)| p * a + q * b).collect::<Vec<f64>>();
-            assert!((subspace_mac(&shape, &[mix(cos, sin), mix(-sin, cos)]) - double).abs() < 1e-13);
+            assert!(within(
+                (subspace_mac(&shape, &[mix(cos, sin), mix(-sin, cos)]) - double).abs(),
+                1e-13,
+                RoundOff
+            ));
         }
         // Any mix of the two, with phases, lies in their span; a copy of one of them adds nothing.
         let inside: Vec<c64> = a.iter().zip(&b).map(|(a, b)| c64::new(*a, 2.0 * b)).collect();
-        assert!((subspace_mac(&inside, &[a.clone(), b.clone()]) - 1.0).abs() < 1e-14);
-        assert!((subspace_mac(&shape, &[a.clone(), a.clone()]) - one).abs() < 1e-12);
+        assert!(within((subspace_mac(&inside, &[a.clone(), b.clone()]) - 1.0).abs(), 1e-14, RoundOff));
+        assert!(within((subspace_mac(&shape, &[a.clone(), a.clone()]) - one).abs(), 1e-12, RoundOff));
         assert_eq!(subspace_mac(&complex(&[0.0; 9]), &[a]), 0.0);
     }
 

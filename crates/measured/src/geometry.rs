@@ -58,16 +58,18 @@ pub fn largest_and_mean(distances: impl Iterator<Item = f64> + Clone) -> [f64; 2
 #[cfg(test)]
 mod tests {
     use super::*;
+    use stridor_base::bounds::{Origin::*, within};
 
     #[test]
     fn a_frame_keeps_lengths_and_takes_its_axes_where_they_belong() {
         let frame = Frame::new([1.0, 2.0, 3.0], [0.0, 2.0, 0.0], [-3.0, 5.0, 0.0]);
-        let near = |a: [f64; 3], b: [f64; 3]| distance(a, b) < 1e-15;
+        let near = |a: [f64; 3], b: [f64; 3]| within(distance(a, b), 1e-15, RoundOff);
         assert!(near(frame.direction([1.0, 0.0, 0.0]), [0.0, 1.0, 0.0]));
         assert!(near(frame.direction([0.0, 1.0, 0.0]), [-1.0, 0.0, 0.0]));
         assert!(near(frame.point([0.0, 0.0, 1.0]), [1.0, 2.0, 4.0]));
+        // Four roundings of coordinates up to four, times ten.
         let (a, b) = ([0.3, -0.2, 0.9], [1.0, 0.1, 0.4]);
-        assert!((distance(frame.point(a), frame.point(b)) - distance(a, b)).abs() < 1e-15);
+        assert!(within((distance(frame.point(a), frame.point(b)) - distance(a, b)).abs(), 1e-14, RoundOff));
     }
 
     #[test]

@@ -155,6 +155,7 @@ impl fmt::Display for Info {
 mod tests {
     use super::*;
     use crate::generate::{Faces, structured_box, structured_plate};
+    use stridor_base::bounds::{Origin::*, within};
 
     #[test]
     fn the_sums_of_a_plate_are_its_area_and_perimeter() {
@@ -164,15 +165,23 @@ mod tests {
             (info.n_nodes, &info.cells),
             (15, &vec![(CellKind::Line2, 12), (CellKind::Triangle3, 16)])
         );
-        assert!((info.regions[0].measure - 2.0).abs() < 1e-14);
-        assert!((info.regions[1..].iter().map(|r| r.measure).sum::<f64>() - 6.0).abs() < 1e-14);
+        assert!(within((info.regions[0].measure - 2.0).abs(), 1e-14, RoundOff));
+        assert!(within(
+            (info.regions[1..].iter().map(|r| r.measure).sum::<f64>() - 6.0).abs(),
+            1e-14,
+            RoundOff
+        ));
         assert_eq!(info.regions[0].edges, [0.5, 0.5f64.hypot(0.5)]);
-        assert!((info.smallest_angle_deg.unwrap() - 45.0).abs() < 1e-12);
+        assert!(within((info.smallest_angle_deg.unwrap() - 45.0).abs(), 1e-12, RoundOff));
         let solid = structured_box(CellKind::Tetrahedron10, [2.0, 1.0, 0.5], [4, 2, 1]).unwrap();
         let info_of_solid = Info::of(&solid);
-        assert!((info_of_solid.regions[0].measure - 1.0).abs() < 1e-14);
+        assert!(within((info_of_solid.regions[0].measure - 1.0).abs(), 1e-14, RoundOff));
         assert_eq!(info_of_solid.regions[0].edges, [0.5, 0.75_f64.sqrt()]);
-        assert!((info_of_solid.regions[1..].iter().map(|r| r.measure).sum::<f64>() - 7.0).abs() < 1e-13);
+        assert!(within(
+            (info_of_solid.regions[1..].iter().map(|r| r.measure).sum::<f64>() - 7.0).abs(),
+            1e-13,
+            RoundOff
+        ));
         let text = info.to_string();
         assert!(text.contains("15 nodes") && text.contains("plate_edge_x_min"), "{text}");
     }

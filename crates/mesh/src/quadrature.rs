@@ -132,6 +132,7 @@ impl CellKind {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use stridor_base::bounds::{Origin::*, within};
 
     fn factorial(n: i32) -> f64 {
         (1..=n).map(f64::from).product()
@@ -160,10 +161,10 @@ mod tests {
             let d = kind.dimension();
             for degree in 1..=5_i32 {
                 let points = kind.quadrature(degree as usize);
-                let within = |k: usize| if d > k { degree } else { 0 };
-                for a in 0..=within(0) {
-                    for b in 0..=within(1) - a * i32::from(d > 1) {
-                        for c in 0..=within(2) - (a + b) * i32::from(d > 2) {
+                let most = |k: usize| if d > k { degree } else { 0 };
+                for a in 0..=most(0) {
+                    for b in 0..=most(1) - a * i32::from(d > 1) {
+                        for c in 0..=most(2) - (a + b) * i32::from(d > 2) {
                             let powers = [a, b, c];
                             let value = |p: &QuadraturePoint| {
                                 p.weight * (0..3).map(|k| p.at[k].powi(powers[k])).product::<f64>()
@@ -172,7 +173,7 @@ mod tests {
                             let right = exact(kind, powers);
                             // Fifteen digits of the tabulated points.
                             assert!(
-                                (found - right).abs() < 1e-14,
+                                within((found - right).abs(), 1e-14, Reference),
                                 "{kind:?} {degree} {powers:?}: {found} {right}"
                             );
                         }

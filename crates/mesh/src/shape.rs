@@ -105,6 +105,7 @@ impl CellKind {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use stridor_base::bounds::{Origin::*, within};
 
     /// Points inside a kind: means of its nodes with weights that differ.
     fn inside(kind: CellKind) -> Vec<[f64; 3]> {
@@ -125,7 +126,10 @@ mod tests {
                 for (k, value) in kind.shape_functions(at).into_iter().enumerate() {
                     let expected = if i == k { 1.0 } else { 0.0 };
                     // Round-off of the inverse of a matrix of small integers.
-                    assert!((value - expected).abs() < 1e-13, "{kind:?}: N{k} = {value} at node {i}");
+                    assert!(
+                        within((value - expected).abs(), 1e-13, RoundOff),
+                        "{kind:?}: N{k} = {value} at node {i}"
+                    );
                 }
             }
         }
@@ -143,9 +147,13 @@ mod tests {
                 {
                     let f = |x: &[f64; 3]| x[0].powi(a) * x[1].powi(b) * x[2].powi(c);
                     let sum: f64 = shape.iter().zip(&nodes).map(|(n, x)| n * f(x)).sum();
-                    assert!((sum - f(&at)).abs() < 1e-13, "{kind:?} x^{a} y^{b} z^{c}: {sum} {}", f(&at));
+                    assert!(
+                        within((sum - f(&at)).abs(), 1e-13, RoundOff),
+                        "{kind:?} x^{a} y^{b} z^{c}: {sum} {}",
+                        f(&at)
+                    );
                 }
-                assert!((shape.iter().sum::<f64>() - 1.0).abs() < 1e-13, "{kind:?}");
+                assert!(within((shape.iter().sum::<f64>() - 1.0).abs(), 1e-13, RoundOff), "{kind:?}");
             }
         }
     }
@@ -166,7 +174,7 @@ mod tests {
                         let expected =
                             of.iter().position(|node| usize::from(*node) == k).map_or(0.0, |j| own[j]);
                         assert!(
-                            (value - expected).abs() < 1e-13,
+                            within((value - expected).abs(), 1e-13, RoundOff),
                             "{kind:?} {of:?}: N{k} = {value}, {expected}"
                         );
                     }
@@ -191,7 +199,10 @@ mod tests {
                     let (up, down) = (moved(h), moved(-h));
                     for (k, gradient) in gradients.iter().enumerate() {
                         let difference = (up[k] - down[k]) / (2.0 * h);
-                        assert!((gradient[c] - difference).abs() < 1e-8, "{kind:?} N{k} by {c}");
+                        assert!(
+                            within((gradient[c] - difference).abs(), 1e-8, Reference),
+                            "{kind:?} N{k} by {c}"
+                        );
                     }
                 }
             }

@@ -67,6 +67,7 @@ mod tests {
     use super::*;
     use crate::CellKind;
     use crate::quality::{cross, dot, minus};
+    use stridor_base::bounds::{Origin::*, within};
 
     /// A box of n × n × n hexahedra, each of them cut into six pyramids about a node in its middle, or into two wedges, or whole.
     fn boxes(n: usize, kind: CellKind) -> Mesh {
@@ -133,7 +134,10 @@ mod tests {
                     volume += dot(at(0), normal) / 6.0;
                 }
             }
-            assert!((area - 6.0).abs() < 1e-12 && (volume - 1.0).abs() < 1e-12, "{kind:?} {area} {volume}");
+            assert!(
+                within((area - 6.0).abs(), 1e-12, RoundOff) && within((volume - 1.0).abs(), 1e-12, RoundOff),
+                "{kind:?} {area} {volume}"
+            );
         }
     }
 }

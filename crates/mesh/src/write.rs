@@ -181,6 +181,7 @@ mod tests {
     use super::*;
     use crate::generate::{Faces, RigSpec, rig, structured_plate};
     use crate::gmsh;
+    use stridor_base::bounds::{Origin::*, within};
 
     #[test]
     fn what_is_written_is_read_back() {
@@ -192,7 +193,8 @@ mod tests {
             let back = gmsh::parse(text.as_bytes(), "memory", 1e-3).unwrap();
             assert_eq!((&back.elements, &back.regions), (&mesh.elements, &mesh.regions));
             for (p, q) in mesh.nodes.iter().zip(&back.nodes) {
-                (0..3).for_each(|k| assert!((p[k] - q[k]).abs() <= 1e-9 * 0.2, "{p:?} {q:?}"));
+                (0..3)
+                    .for_each(|k| assert!(within((p[k] - q[k]).abs(), 1e-9 * 0.2, Reference), "{p:?} {q:?}"));
             }
             assert!(text == to_msh(&back, 1e-3).unwrap(), "writing again gives other bytes");
         }

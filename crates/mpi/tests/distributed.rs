@@ -13,6 +13,7 @@ use std::f64::consts::TAU;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
+use stridor::bounds::{Origin::*, within};
 use tempfile::TempDir;
 
 /// Engines that share out the matrices; they find real modes by different methods.
@@ -66,7 +67,10 @@ fn same_on_all_ranks(folder: &Path) -> Value {
         assert_eq!(values.len(), expected.len(), "{ranks} ranks");
         for (found, expected) in values.iter().zip(&expected) {
             let apart = (found[0] - expected[0]).hypot(found[1] - expected[1]);
-            assert!(apart <= 1e-8 * expected[0].hypot(expected[1]), "{ranks} ranks: {found:?}, {expected:?}");
+            assert!(
+                within(apart, 1e-8 * expected[0].hypot(expected[1]), Tolerance),
+                "{ranks} ranks: {found:?}, {expected:?}"
+            );
         }
         let certificate = |summary: &Value, key: &str| summary["cea"]["certificate"][key].clone();
         for key in ["unstable_counted", "unstable_found"] {
@@ -74,7 +78,7 @@ fn same_on_all_ranks(folder: &Path) -> Value {
         }
         let errors =
             found["cea"]["eigenvalues"].as_array().unwrap().iter().map(|mode| &mode["backward_error"]);
-        assert!(errors.flat_map(Value::as_f64).all(|error| error <= 1e-10), "{ranks} ranks");
+        assert!(errors.flat_map(Value::as_f64).all(|error| within(error, 1e-10, Tolerance)), "{ranks} ranks");
         let second = &found["cea"]["second_method"];
         for other in ["unconfirmed_hz", "missed_hz"] {
             assert_eq!(second[other].as_array().map(Vec::len), Some(0), "{ranks} ranks: {second}");
@@ -127,7 +131,7 @@ fn real_modes_with_their_count() {
         let found = frequencies(&found);
         assert_eq!(found.len(), expected.len());
         assert!(
-            found.iter().zip(&expected).all(|(a, b)| (a - b).abs() <= 1e-8 * b),
+            found.iter().zip(&expected).all(|(a, b)| within((a - b).abs(), 1e-8 * b, Tolerance)),
             "{ranks} ranks, {engine}"
         );
     }

@@ -198,12 +198,16 @@ fn symbol_in_si(symbol: &str) -> Option<Unit> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use stridor_base::bounds::{Origin::*, within};
 
     #[test]
     fn units_become_si() {
         let close = |text: &str, dimension, expected: f64| {
             let got = parse_quantity(text, dimension).unwrap();
-            assert!((got - expected).abs() <= 1e-14 * expected.abs(), "{text}: {got} {expected}");
+            assert!(
+                within((got - expected).abs(), 1e-14 * expected.abs(), RoundOff),
+                "{text}: {got} {expected}"
+            );
         };
         close("1 mm", LENGTH, 1e-3);
         close("210 GPa", PRESSURE, 210e9);

@@ -69,6 +69,7 @@ fn line(values: &[f64]) -> Option<(f64, f64)> {
 mod tests {
     use super::*;
     use num_complex::Complex64 as c64;
+    use stridor_base::bounds::{Origin::*, within};
 
     #[test]
     fn a_growing_turn_is_measured_and_nothing_is_not() {
@@ -78,8 +79,12 @@ mod tests {
         let re: Vec<f64> = (0..3000).map(|k| at(k) * turn(k).cos()).collect();
         let im: Vec<f64> = (0..3000).map(|k| at(k) * turn(k).sin()).collect();
         let found = growth(&re, &im, step, [0.01, 0.29]).unwrap();
-        assert!((found.rate - 25.0).abs() < 1e-9 && (found.frequency_hz - 153.7).abs() < 1e-9, "{found:?}");
-        assert!(found.deviation < 1e-12);
+        assert!(
+            within((found.rate - 25.0).abs(), 1e-9, RoundOff)
+                && within((found.frequency_hz - 153.7).abs(), 1e-9, RoundOff),
+            "{found:?}"
+        );
+        assert!(within(found.deviation, 1e-12, RoundOff));
         assert!(growth(&re, &im, step, [0.0, 5e-4]).is_none());
         assert!(growth(&[0.0; 50], &[0.0; 50], step, [0.0, 5e-3]).is_none());
     }
@@ -101,8 +106,8 @@ mod tests {
             let (re, im): (Vec<f64>, Vec<f64>) = record.iter().map(|c| (c.re, c.im)).unzip();
             let found = growth(&re, &im, step, [0.0, 3.0]).unwrap();
             // What the window leaves of the ripple and of the beginning; the same at every run.
-            assert!((found.rate - 0.25).abs() < 5e-7, "{phase}: {found:?}");
-            assert!((found.frequency_hz - 15.37).abs() < 1e-7, "{phase}: {found:?}");
+            assert!(within((found.rate - 0.25).abs(), 5e-7, Discretisation), "{phase}: {found:?}");
+            assert!(within((found.frequency_hz - 15.37).abs(), 1e-7, Discretisation), "{phase}: {found:?}");
         }
     }
 }

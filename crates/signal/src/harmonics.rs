@@ -274,6 +274,7 @@ fn combination_name(factors: [i32; 2], hz: [f64; 2]) -> String {
 mod tests {
     use super::super::{peaks, spectrum};
     use super::*;
+    use stridor_base::bounds::{Origin::*, within};
 
     const STEP: f64 = 2e-5;
     const ROWS: usize = 5000;
@@ -326,7 +327,7 @@ mod tests {
                 .sum()
         });
         let (found, hz) = named(&[force, motion]);
-        assert!((hz.unwrap() - 1663.7).abs() < 0.2, "{hz:?}");
+        assert!(within((hz.unwrap() - 1663.7).abs(), 0.2, Discretisation), "{hz:?}");
         assert_eq!(words(&found[0]), ["fundamental", "2 × 1664 Hz"]);
         let own = ["fundamental", "2 × 1664 Hz", "3 × 1664 Hz", "4 × 1664 Hz", "5 × 1664 Hz"];
         assert_eq!(words(&found[1]), own);
@@ -352,7 +353,11 @@ mod tests {
         for away in [5.0, -8.0] {
             let (f, third) = (900.0, 2700.0 + away);
             let (found, hz) = named(&[record(|t| (TAU * f * t).sin() + 0.5 * (TAU * third * t).sin())]);
-            assert!((hz.unwrap() - f).abs() < 0.2 && words(&found[0]) == ["fundamental", ""], "{found:?}");
+            assert!(
+                within((hz.unwrap() - f).abs(), 0.2, Discretisation)
+                    && words(&found[0]) == ["fundamental", ""],
+                "{found:?}"
+            );
         }
         // At 3 f₀ itself, but with a phase that wanders by a turn and a half.
         let wandering = record(|t| {
@@ -367,7 +372,7 @@ mod tests {
     fn half_the_fundamental_needs_the_same_evidence() {
         let (found, hz) =
             named(&[record(|t| (TAU * 1200.0 * t).sin() + 0.05 * (TAU * 600.0 * t + 0.3).sin())]);
-        assert!((hz.unwrap() - 1200.0).abs() < 0.2);
+        assert!(within((hz.unwrap() - 1200.0).abs(), 0.2, Discretisation));
         assert_eq!(words(&found[0]), ["1/2 × 1200 Hz", "fundamental"]);
         let (found, _) =
             named(&[record(|t| (TAU * 1200.0 * t).sin() + 0.05 * (TAU * 606.0 * t + 0.3).sin())]);

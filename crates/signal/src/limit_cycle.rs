@@ -65,6 +65,7 @@ pub fn limit_cycle(record: &[f64], step: f64, frequency_hz: f64) -> Option<Limit
 mod tests {
     use super::*;
     use std::f64::consts::TAU;
+    use stridor_base::bounds::{Origin::*, within};
 
     fn record(of: impl Fn(f64) -> f64) -> Vec<f64> {
         (0..25_000).map(|k| of(k as f64 * 1e-5)).collect()
@@ -75,8 +76,11 @@ mod tests {
         let beat = record(|t| (TAU * 1661.0 * t).sin() + 0.5 * (TAU * 2597.0 * t).sin() - 3.0);
         let cycle = limit_cycle(&beat, 1e-5, 1661.0).unwrap();
         // The phase between the two at the swings of a piece; whole periods of one alone.
-        assert!((cycle.amplitude - 1.5).abs() < 0.01, "{cycle:?}");
-        assert!((cycle.rms - (0.5f64 + 0.125).sqrt()).abs() < 1e-3 && (cycle.mean + 3.0).abs() < 1e-3);
+        assert!(within((cycle.amplitude - 1.5).abs(), 0.01, Discretisation), "{cycle:?}");
+        assert!(
+            within((cycle.rms - (0.5f64 + 0.125).sqrt()).abs(), 1e-3, Discretisation)
+                && within((cycle.mean + 3.0).abs(), 1e-3, Discretisation)
+        );
         assert!(cycle.steady() && cycle.pieces == 32);
     }
 
@@ -87,7 +91,10 @@ mod tests {
             let cycle = limit_cycle(&found, 1e-5, 1661.0).unwrap();
             // e^{rate T/2} between the halves.
             let exact = 2.0 * (0.5 * rate * 0.125).tanh();
-            assert!((cycle.drift - exact).abs() < 0.01 && !cycle.steady(), "{cycle:?} {exact}");
+            assert!(
+                within((cycle.drift - exact).abs(), 0.01, Discretisation) && !cycle.steady(),
+                "{cycle:?} {exact}"
+            );
         }
         assert!(limit_cycle(&record(|_| 4.0), 1e-5, 1661.0).unwrap().steady());
         assert!(limit_cycle(&record(|t| t)[..400], 1e-5, 1661.0).is_none());

@@ -52,6 +52,7 @@ mod tests {
     use super::*;
     use crate::spectrum;
     use std::f64::consts::TAU;
+    use stridor_base::bounds::{Origin::*, within};
 
     #[test]
     fn sines_between_the_lines_are_found_with_their_amplitudes() {
@@ -67,7 +68,8 @@ mod tests {
         assert_eq!(found.len(), 4, "{found:?}");
         for (peak, (f, a)) in found.iter().zip(&parts[..4]) {
             assert!(
-                (peak.frequency_hz - f).abs() < 0.1 && (peak.amplitude / a - 1.0).abs() < 0.01,
+                within((peak.frequency_hz - f).abs(), 0.1, Discretisation)
+                    && within((peak.amplitude / a - 1.0).abs(), 0.01, Discretisation),
                 "{peak:?}"
             );
         }

@@ -89,6 +89,7 @@ impl Resampler {
 mod tests {
     use super::*;
     use std::f64::consts::TAU;
+    use stridor_base::bounds::{Origin::*, within};
 
     fn resampled(step: f64, hz: f64, seconds: f64) -> Vec<f64> {
         let mut resampler = Resampler::new(step, 48_000.0);
@@ -107,12 +108,12 @@ mod tests {
             assert!(out.len().abs_diff(2400) <= 2, "{}", out.len());
             let off = |k: usize| (out[k] - (TAU * 3333.0 * k as f64 / 48_000.0).sin()).abs();
             let worst = (100..2300).map(off).fold(0.0, f64::max);
-            assert!(worst < 2e-4, "{step}: {worst}");
+            assert!(within(worst, 2e-4, Discretisation), "{step}: {worst}");
         }
         for hz in [24_200.0, 30_000.0, 44_900.0] {
             let out = resampled(1e-5, hz, 0.05);
             let worst = out[100..2300].iter().fold(0.0f64, |m, x| m.max(x.abs()));
-            assert!(worst < 2e-4, "{hz}: {worst}");
+            assert!(within(worst, 2e-4, Discretisation), "{hz}: {worst}");
         }
     }
 }

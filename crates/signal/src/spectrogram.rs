@@ -149,6 +149,7 @@ impl ShortTime {
 mod tests {
     use super::*;
     use std::f64::consts::TAU;
+    use stridor_base::bounds::{Origin::*, within};
 
     fn ridge(column: &[f64]) -> (usize, f64) {
         let top = column.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)).unwrap();
@@ -168,7 +169,7 @@ mod tests {
         for k in 0..found.columns() {
             let (row, height) = ridge(found.column(k));
             let off = row as f64 * found.resolution_hz - (300.0 + 200.0 * found.time(k));
-            assert!(off.abs() <= 0.51 * found.resolution_hz, "{k}: {off}");
+            assert!(within(off.abs(), 0.51 * found.resolution_hz, Discretisation), "{k}: {off}");
             assert!(height > 0.75 && height < 1.02, "{k}: {height}");
         }
     }
@@ -197,7 +198,7 @@ mod tests {
             assert!((0.84..1.001).contains(&(line(last, g) / 0.5)), "{n}");
             assert!(line(first, g) < 0.02, "{n}: {}", line(first, g));
             let end = found.time(found.columns() - 1) + 0.5 * found.segment;
-            assert!((end / (n as f64 * step) - 1.0).abs() < 0.05, "{n}: {end}");
+            assert!(within((end / (n as f64 * step) - 1.0).abs(), 0.05, Discretisation), "{n}: {end}");
         }
         assert_eq!(spectrogram(&[], step, 6000.0), Spectrogram::default());
         assert_eq!(spectrogram(&[1.0, 2.0], step, 6000.0).columns(), 0);

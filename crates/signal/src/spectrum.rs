@@ -97,6 +97,7 @@ impl Welch {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use stridor_base::bounds::{Origin::*, within};
 
     #[test]
     fn pieces_give_the_same_bits_and_lines_add_up_to_the_mean_square() {
@@ -109,11 +110,15 @@ mod tests {
         let mut welch = Welch::new(4000, step);
         record.chunks(777).for_each(|piece| welch.take(piece));
         assert_eq!(welch.finish(), whole);
-        assert!((whole.frequency_hz(whole.strongest().unwrap()) - 1661.3).abs() < 0.51 * whole.resolution_hz);
+        assert!(within(
+            (whole.frequency_hz(whole.strongest().unwrap()) - 1661.3).abs(),
+            0.51 * whole.resolution_hz,
+            Discretisation
+        ));
         assert!(Spectrum::default().strongest().is_none());
         let sum: f64 = (0..whole.amplitude.len()).map(|k| whole.mean_square(k)).sum();
         let exact: f64 = parts.iter().map(|(_, a)| 0.5 * a * a).sum();
-        assert!((sum / exact - 1.0).abs() < 1e-3, "{sum} {exact}");
+        assert!(within((sum / exact - 1.0).abs(), 1e-3, Discretisation), "{sum} {exact}");
         assert_eq!(Welch::new(100, step).finish(), Spectrum::default());
     }
 }

@@ -139,16 +139,17 @@ mod tests {
     use super::super::plate::samples::disc;
     use super::*;
     use puruspe::Jn;
+    use stridor_base::bounds::{Origin::*, within};
 
     #[test]
     fn the_quadratures_are_exact_for_polynomials() {
         for (p, exact) in [(0, 1.0), (1, 0.5), (8, 1.0 / 9.0), (23, 1.0 / 24.0)] {
             let sum: f64 = gauss(12).iter().map(|(x, w)| w * x.powi(p)).sum();
-            assert!((sum - exact).abs() < 1e-14, "{p}: {sum}");
+            assert!(within((sum - exact).abs(), 1e-14, RoundOff), "{p}: {sum}");
         }
         let parts = lagrange(0.3217, 9);
         let back: f64 = parts.iter().enumerate().map(|(j, part)| part * chebyshev(j, 9).powi(8)).sum();
-        assert!((back - 0.3217f64.powi(8)).abs() < 1e-15);
+        assert!(within((back - 0.3217f64.powi(8)).abs(), 1e-15, RoundOff));
     }
 
     #[test]
@@ -165,13 +166,13 @@ mod tests {
             let resistance = 1.0 - Jn(1, 2.0 * ka) / ka;
             let exact = 2.0 * 0.5 * air.density * air.speed * PI * a * a * resistance;
             // Discretisation: the largest k is 213 of 220 that the points are made for.
-            assert!((found / exact - 1.0).abs() < 2e-3, "{ka}: {found} {exact}");
+            assert!(within((found / exact - 1.0).abs(), 2e-3, Discretisation), "{ka}: {found} {exact}");
         }
         // A small piston is a monopole of volume acceleration Q̇ in a baffle: ρ₀ Q̇²/(4πc) a side, Q̇ its amplitude.
         let small = Radiation::new(&disc(1e-3, 10, &[&|_, _| 1.0]), 100.0);
         let volume = PI * 1e-6;
         let exact = 2.0 * air.density * volume * volume / (4.0 * PI * air.speed);
-        assert!((small.power(air, 50.0, &[0.5])[0] / exact - 1.0).abs() < 1e-3);
+        assert!(within((small.power(air, 50.0, &[0.5])[0] / exact - 1.0).abs(), 1e-3, Discretisation));
     }
 
     #[test]
@@ -182,7 +183,10 @@ mod tests {
         let air = Air::default();
         let parts = radiation.power(air, 63.0, &[1.0, -0.7, 0.49, 0.0, 0.0, 0.0]);
         let whole = radiation.power(air, 63.0, &[0.0, 0.0, 0.0, 0.0, 0.0, 1.0])[2];
-        assert!(((parts[0] + parts[1]) / whole - 1.0).abs() < 1e-12 && parts[2] == 0.0, "{parts:?} {whole}");
+        assert!(
+            within(((parts[0] + parts[1]) / whole - 1.0).abs(), 1e-12, RoundOff) && parts[2] == 0.0,
+            "{parts:?} {whole}"
+        );
     }
 
     #[test]
@@ -216,19 +220,19 @@ mod tests {
         let odd = 32.0 * ka / PI.powi(5) * (1.0 - ka / 12.0 * 2.0 * first);
         let found = efficiency(k, [1.0, 0.0, 0.0]);
         // The next terms of the series in (k side)² = 0.09, and discretisation.
-        assert!((found / odd - 1.0).abs() < 2e-3, "{found} {odd}");
+        assert!(within((found / odd - 1.0).abs(), 2e-3, Theory), "{found} {odd}");
         let second = 1.0 - 24.0 / (4.0 * PI * PI);
         let even = 8.0 * ka * ka / (3.0 * 4.0 * PI.powi(5)) * (1.0 - ka / 20.0 * (first + second));
         let found = efficiency(k, [0.0, 0.0, 1.0]);
-        assert!((found / even - 1.0).abs() < 4e-3, "{found} {even}");
+        assert!(within((found / even - 1.0).abs(), 4e-3, Theory), "{found} {even}");
         // Two modes of unlike symmetry do not know of each other.
         let both = efficiency(k, [1.0, 0.7, 1.0]) - efficiency(k, [1.0, 0.0, 1.0]);
-        assert!(both.abs() < 1e-9 * odd);
+        assert!(within(both.abs(), 1e-9 * odd, RoundOff));
         // Far above coincidence every plate reaches one.
         let high = Radiation::new(&plate, 400.0);
         let omega = 380.0 * air.speed;
         let per = 0.5 * air.density * air.speed * side * side * 0.25;
         let found = 0.5 * high.power(air, 380.0, &[0.5 * omega * omega, 0.0, 0.0])[0] / per;
-        assert!((found - 1.0).abs() < 0.01, "{found}");
+        assert!(within((found - 1.0).abs(), 0.01, Theory), "{found}");
     }
 }

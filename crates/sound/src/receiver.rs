@@ -94,6 +94,7 @@ mod tests {
     use super::super::plate::samples::disc;
     use super::*;
     use faer::Mat;
+    use stridor_base::bounds::{Origin::*, within};
 
     /// The amplitude and phase of p at `place` per unit amplitude of a sine of acceleration.
     fn transfer(plates: &[Plate], place: [f64; 3], hz: f64, step: f64) -> [f64; 2] {
@@ -127,9 +128,9 @@ mod tests {
             let lag = 0.5 * k * ((z * z + a * a).sqrt() - z);
             let exact = 2.0 * air.density * air.speed / (TAU * hz) * lag.sin().abs();
             let found = re.hypot(im);
-            assert!((found / exact - 1.0).abs() < 3e-3, "{hz} {z}: {found} {exact}");
+            assert!(within((found / exact - 1.0).abs(), 3e-3, Discretisation), "{hz} {z}: {found} {exact}");
             let [behind, _] = transfer(&plate, [0.0, 0.0, -z], hz, step);
-            assert!((behind + re).abs() < 1e-12 * exact);
+            assert!(within((behind + re).abs(), 1e-12 * exact, RoundOff));
         }
         assert_eq!(transfer(&plate, [1.0, 0.0, 0.0], 1000.0, 1e-5), [0.0; 2]);
     }
@@ -153,7 +154,7 @@ mod tests {
             for (k, p) in received.iter().enumerate() {
                 let time = (k + receiver.delay()) as f64 * step;
                 let exact = scale * pulse(time - r / air.speed);
-                assert!((p - exact).abs() < 1e-5 * scale, "{r} {k}: {p} {exact}");
+                assert!(within((p - exact).abs(), 1e-5 * scale, Discretisation), "{r} {k}: {p} {exact}");
             }
         }
     }

@@ -120,6 +120,7 @@ fn vector_areas<'f>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use stridor_base::bounds::{Origin::*, within};
 
     #[test]
     fn pistons_share_the_area_and_a_bent_plate_is_none() {
@@ -131,14 +132,15 @@ mod tests {
         };
         let surface = Surface::new("p", &nodes, faces, &reduce).unwrap();
         // The front is up though the faces look down: the volume of a rise of one millimetre is the area times that.
-        assert!(surface.normal == [0.0, 0.0, 1.0] && (surface.area - 2.5).abs() < 1e-14);
+        assert!(surface.normal == [0.0, 0.0, 1.0] && within((surface.area - 2.5).abs(), 1e-14, RoundOff));
         let rise = Mat::from_fn(15, 1, |i, _| if i % 3 == 2 { 1e-3 } else { 0.0 });
         let volume: f64 = surface.moving(&rise).strength.col_as_slice(0).iter().sum();
-        assert!((volume - 2.5e-3).abs() < 1e-17);
+        assert!(within((volume - 2.5e-3).abs(), 1e-17, RoundOff));
         // Centroid of a rectangle of 2 m² at x = 1 and a triangle of half a square metre at x = 7/3.
         let exact = (2.0 + 0.5 * 7.0 / 3.0) / 2.5;
         assert!(
-            (surface.middle[0] - exact).abs() < 1e-14 && (surface.middle[2] - 1.0).abs() < 1e-14,
+            within((surface.middle[0] - exact).abs(), 1e-14, RoundOff)
+                && within((surface.middle[2] - 1.0).abs(), 1e-14, RoundOff),
             "{:?}",
             surface.middle
         );

@@ -27,6 +27,7 @@ pub fn power_level(watt: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use stridor_base::bounds::{Origin::*, within};
 
     #[test]
     fn weights_are_those_of_the_standard() {
@@ -46,15 +47,18 @@ mod tests {
         ];
         for (hz, db) in table {
             let found = 20.0 * a_weighting(hz).log10();
-            assert!((found - db).abs() < 0.051, "{hz}: {found}");
+            assert!(within((found - db).abs(), 0.051, Reference), "{hz}: {found}");
         }
-        assert!((20.0 * a_weighting(1000.0).log10()).abs() < 1e-3);
+        assert!(within((20.0 * a_weighting(1000.0).log10()).abs(), 1e-3, Reference));
         assert_eq!(a_weighting(0.0), 0.0);
     }
 
     #[test]
     fn one_pascal_is_94_decibel() {
-        assert!((pressure_level(1.0) - 93.979).abs() < 1e-3 && (power_level(1e-3) - 90.0).abs() < 1e-12);
+        assert!(
+            within((pressure_level(1.0) - 93.979).abs(), 1e-3, Reference)
+                && within((power_level(1e-3) - 90.0).abs(), 1e-12, RoundOff)
+        );
         assert_eq!(pressure_level(0.0), f64::NEG_INFINITY);
     }
 }

@@ -1,4 +1,5 @@
 use super::*;
+use crate::bounds::{Origin::*, within};
 use crate::structure::{Material, PartKind, PlateTheory, RayleighDamping, Shell};
 
 const DISC_RADIUS: f64 = 0.075;
@@ -97,8 +98,11 @@ fn rim_gap_is_that_of_the_circle_and_weights_are_its_length() {
     for p in &points {
         let y = p.position[1];
         let exact = DISC_RADIUS - (DISC_RADIUS * DISC_RADIUS - y * y).sqrt();
-        assert!((p.gap - exact).abs() < 1e-15 && (p.weight - 0.5 * chord).abs() < 1e-15);
-        assert!(((p.position[0] - 0.013).abs() - 0.5e-3).abs() < 1e-15);
+        assert!(
+            within((p.gap - exact).abs(), 1e-15, RoundOff)
+                && within((p.weight - 0.5 * chord).abs(), 1e-15, RoundOff)
+        );
+        assert!(within(((p.position[0] - 0.013).abs() - 0.5e-3).abs(), 1e-15, RoundOff));
     }
     // a (1 − cos kα) ≤ 1 mm for k ≤ 4: nine nodes, two points each.
     assert_eq!(points.len(), 18);
@@ -121,9 +125,9 @@ fn directions_are_the_relative_displacement_of_the_points() {
                 // The foot of the point on z = 0 for the counter-body.
                 let x = if body > 0.0 { p.position } else { [p.position[0], p.position[1], 0.0] };
                 let moved = add(t, cross(r, x));
-                assert!((p.normal.dot(&u) + body * moved[2]).abs() < 1e-15);
-                assert!((p.tangents[0].dot(&u) - body * moved[0]).abs() < 1e-15);
-                assert!((p.tangents[1].dot(&u) - body * moved[1]).abs() < 1e-15);
+                assert!(within((p.normal.dot(&u) + body * moved[2]).abs(), 1e-15, RoundOff));
+                assert!(within((p.tangents[0].dot(&u) - body * moved[0]).abs(), 1e-15, RoundOff));
+                assert!(within((p.tangents[1].dot(&u) - body * moved[1]).abs(), 1e-15, RoundOff));
             }
         }
     }
@@ -137,7 +141,7 @@ fn lead_angle_leaves_the_load_to_the_lower_edge() {
     assert_eq!(points.len(), 2);
     assert!(points.iter().all(|p| p.weight == 0.5));
     let difference = (points[0].gap - points[1].gap).abs();
-    assert!((difference - 1e-3 * lead.sin()).abs() < 1e-15);
+    assert!(within((difference - 1e-3 * lead.sin()).abs(), 1e-15, RoundOff));
 }
 
 #[test]
@@ -161,9 +165,12 @@ fn a_pad_on_a_face_has_its_area_and_its_thickness() {
     let points = pair_surfaces(&s, &reduce).unwrap();
     assert_eq!(points.len(), 9);
     let area: f64 = points.iter().map(|p| p.weight).sum();
-    assert!((area - 4e-4).abs() < 1e-18);
+    assert!(within((area - 4e-4).abs(), 1e-18, RoundOff));
     for p in &points {
-        assert!((p.gap - 1e-5).abs() < 1e-15 && (p.position[2] - 1e-5).abs() < 1e-15);
+        assert!(
+            within((p.gap - 1e-5).abs(), 1e-15, RoundOff)
+                && within((p.position[2] - 1e-5).abs(), 1e-15, RoundOff)
+        );
     }
 }
 
@@ -234,7 +241,7 @@ fn points_do_not_depend_on_the_order_of_faces() {
         let n = 6 * rig.nodes.len();
         assert_eq!((one.len(), other.len()), (4, 4));
         for (a, b) in one.iter().zip(&other) {
-            assert!((a.gap - b.gap).abs() < 1e-16);
+            assert!(within((a.gap - b.gap).abs(), 1e-16, RoundOff));
             for (a, b) in
                 [(&a.normal, &b.normal), (&a.tangents[0], &b.tangents[0]), (&a.tangents[1], &b.tangents[1])]
             {
@@ -242,7 +249,7 @@ fn points_do_not_depend_on_the_order_of_faces() {
                     let unit: Vec<f64> = (0..n).map(|i| f64::from(u8::from(i == k))).collect();
                     (a.dot(&unit) - b.dot(&unit)).abs()
                 };
-                assert!((0..n).all(|k| difference(k) < 1e-14));
+                assert!((0..n).all(|k| within(difference(k), 1e-14, RoundOff)));
             }
         }
     }

@@ -1,4 +1,5 @@
 use super::*;
+use crate::bounds::{Origin::*, within};
 use crate::job::frf::frfs;
 use crate::job::modes::part_modes;
 use crate::job::samples::disc;
@@ -83,7 +84,11 @@ fn a_test_made_of_the_models_own_modes_is_found_again() {
     let all = tests.modes(&with.modes["disc"], &named);
     let comparison = &all[0];
     let placed = comparison.placed.unwrap();
-    assert!((placed.largest - 4e-4).abs() < 1e-6 && (placed.mean - 4e-4).abs() < 1e-6, "{placed:?}");
+    assert!(
+        within((placed.largest - 4e-4).abs(), 1e-6, Reference)
+            && within((placed.mean - 4e-4).abs(), 1e-6, Reference),
+        "{placed:?}"
+    );
     assert_eq!(placed.points, labels.len());
     assert_eq!(comparison.rows.len(), named.modes.len());
     for (k, row) in comparison.rows.iter().enumerate() {
@@ -91,7 +96,7 @@ fn a_test_made_of_the_models_own_modes_is_found_again() {
         assert_eq!(comparison.level_of(mode), comparison.level_of(k));
         assert!(row.mac.unwrap() > 0.99, "{k}: {row:?}");
         // Written with six digits.
-        assert!((named.modes.frequency_hz(mode) / row.frequency_hz - 1.0).abs() < 1e-5);
+        assert!(within((named.modes.frequency_hz(mode) / row.frequency_hz - 1.0).abs(), 1e-5, Reference));
         assert_eq!((row.damping_ratio, row.deviation), (Some(0.004), Some(0.005)));
     }
     assert!(comparison.computed_alone().is_empty());
@@ -167,8 +172,12 @@ fn measured_responses_stand_beside_computed_ones_at_their_own_frequencies() {
     assert!(pair.swapped && pair.place == "inside" && pair.quantity == Quantity::Mobility);
     // From the band's first frequency on.
     assert_eq!(pair.frequencies_hz[0], 54.0);
-    assert!((pair.assurance - 1.0).abs() < 1e-9, "{}", pair.assurance);
-    let opposite = pair.measured.iter().zip(&pair.computed).all(|(a, b)| (a + b).norm() < 1e-6 * b.norm());
+    assert!(within((pair.assurance - 1.0).abs(), 1e-9, Reference), "{}", pair.assurance);
+    let opposite = pair
+        .measured
+        .iter()
+        .zip(&pair.computed)
+        .all(|(a, b)| within((a + b).norm(), 1e-6 * b.norm(), Reference));
     assert!(opposite, "the sign stays where no direction is stated");
     assert_eq!(all[0].computed_alone, ["rim"]);
     assert!(

@@ -57,6 +57,7 @@ fn of_part(part: &Part, place: &str, nodes: &[[f64; 3]], hz: f64) -> Option<Faul
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bounds::{Origin::*, within};
     use crate::mesh::generate::structured_box;
     use crate::mesh::{Cell, CellKind};
     use crate::structure::samples::STEEL;
@@ -77,7 +78,7 @@ mod tests {
         let cells = brick.elements.iter().filter(|cell| cell.dimension() == 3).cloned().collect();
         let plate = as_plate(&Part::new("pad", cells, Solid { material: STEEL }), STEEL, &brick.nodes);
         assert!(
-            (plate.thickness() - 1e-3).abs() < 5e-5
+            within((plate.thickness() - 1e-3).abs(), 5e-5, Discretisation)
                 && of_part(&plate, "`solid.pad`", &brick.nodes, 50.0).is_none()
         );
         let text = of_part(&plate, "`solid.pad`", &brick.nodes, 200.0).unwrap().to_string();

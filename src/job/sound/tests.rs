@@ -1,4 +1,5 @@
 use super::acoustics::acoustics;
+use crate::bounds::{Origin::*, within};
 use crate::case::Case;
 use crate::case::{ON_AXIS, SoundAnalysis};
 use crate::job::Prepared;
@@ -43,17 +44,28 @@ fn one_mode_sounds_as_loud_as_its_closed_form() {
     let (air, volume) = (Air::default(), 3.0 * volume(mode).abs());
     let watt = air.density * volume * volume / (2.0 * std::f64::consts::PI * air.speed);
     let [level, weighted] = sound.power_levels();
-    assert!((level - power_level(watt)).abs() < 0.1, "{level} {}", power_level(watt));
-    assert!((weighted - level - 20.0 * crate::sound::a_weighting(hz).log10()).abs() < 0.05);
+    assert!(within((level - power_level(watt)).abs(), 0.1, Theory), "{level} {}", power_level(watt));
+    assert!(within(
+        (weighted - level - 20.0 * crate::sound::a_weighting(hz).log10()).abs(),
+        0.05,
+        Discretisation
+    ));
     for microphone in &sound.microphones {
         let r = microphone.at.iter().map(|c| c * c).sum::<f64>().sqrt();
         let amplitude = air.density * volume / (TAU * r);
         let exact = pressure_level(0.5 * amplitude * amplitude);
-        assert!((microphone.levels()[0] - exact).abs() < 0.1, "{} {exact}", microphone.levels()[0]);
+        assert!(
+            within((microphone.levels()[0] - exact).abs(), 0.1, Theory),
+            "{} {exact}",
+            microphone.levels()[0]
+        );
     }
-    assert!((sound.mode_shares[mode] - 1.0).abs() < 1e-9);
+    assert!(within((sound.mode_shares[mode] - 1.0).abs(), 1e-9, RoundOff));
     assert_eq!(sound.tones.len(), 1);
-    assert!((sound.tones[0].peak.frequency_hz - hz).abs() < 0.1 && sound.tones[0].share > 0.99);
+    assert!(
+        within((sound.tones[0].peak.frequency_hz - hz).abs(), 0.1, Discretisation)
+            && sound.tones[0].share > 0.99
+    );
     let far = &sound.microphones[1];
     // 4 m take 11.7 ms, 0.5 m take 1.5 ms; both are silent until then.
     assert!(far.name == "far");
@@ -61,7 +73,7 @@ fn one_mode_sounds_as_loud_as_its_closed_form() {
         let pressure = &microphone.recording.pressure;
         assert!(pressure.len().abs_diff(19_200 + samples) < 5, "{}", pressure.len());
         assert!(
-            pressure[..samples - 40].iter().all(|p| p.abs() < 1e-12)
+            pressure[..samples - 40].iter().all(|p| within(p.abs(), 1e-12, RoundOff))
                 && pressure.iter().any(|p| p.abs() > 1e-6)
         );
     }
@@ -76,7 +88,12 @@ fn places_where_nothing_can_be_said_are_refused() {
     assert!(faults([0.0, 0.5, 0.2]).contains("in the plane of the plates"));
     let acoustics = acoustics(&prepared, &wanted(Some(1.0), &[])).unwrap();
     let [(name, at)] = &acoustics.microphones[..] else { panic!("one microphone") };
-    assert!(name == ON_AXIS && (at[0] - 1.0).abs() < 1e-12 && at[1].abs() < 1e-12 && at[2].abs() < 1e-12);
+    assert!(
+        name == ON_AXIS
+            && within((at[0] - 1.0).abs(), 1e-12, RoundOff)
+            && within(at[1].abs(), 1e-12, RoundOff)
+            && within(at[2].abs(), 1e-12, RoundOff)
+    );
 }
 
 /// Half of a record sounds, the rest is silent: wherever that half is, its level is that of the tone, by the closed form.
@@ -113,6 +130,12 @@ fn levels_are_those_of_the_loud_half() {
         windows.push(sound.window[0] - begin as f64 * step);
     }
     // A burst that begins inside of a segment spreads its lines.
-    assert!(levels.iter().all(|difference| difference.abs() < 0.3), "{levels:?} {windows:?}");
-    assert!(windows.iter().all(|late| late.abs() < 0.05 * step * steps as f64), "{levels:?} {windows:?}");
+    assert!(
+        levels.iter().all(|difference| within(difference.abs(), 0.3, Discretisation)),
+        "{levels:?} {windows:?}"
+    );
+    assert!(
+        windows.iter().all(|late| within(late.abs(), 0.05 * step * steps as f64, Discretisation)),
+        "{levels:?} {windows:?}"
+    );
 }

@@ -129,6 +129,7 @@ impl<'a> HarmonicFields<'a> {
 
 #[cfg(test)]
 mod tests {
+    use crate::bounds::{Origin::*, within};
     use crate::case::Case;
     use crate::job::{Prepared, Selection, analyse};
     use crate::linalg::c64;
@@ -192,20 +193,30 @@ probe.block = { on = "block", direction = [1, 0, 0] }
         let run = run("0.4 s");
         let cycle = run.cycle.as_ref().unwrap();
         assert!(
-            (cycle.frequency_hz - 100.0).abs() < 0.1 && cycle.harmonics.len() == 6,
+            within((cycle.frequency_hz - 100.0).abs(), 0.1, Discretisation) && cycle.harmonics.len() == 6,
             "{}",
             cycle.frequency_hz
         );
         // Nine or ten whole periods of the last quarter.
-        assert!((0.299..0.311).contains(&cycle.window[0]) && (cycle.window[1] - 0.4).abs() < 1e-12);
+        assert!(
+            (0.299..0.311).contains(&cycle.window[0])
+                && within((cycle.window[1] - 0.4).abs(), 1e-12, RoundOff)
+        );
         let [first, others @ ..] = &cycle.harmonics[..] else { panic!("no harmonic") };
         let u = first[0][0];
-        assert!((u.norm() - 1e-6).abs() < 1e-9, "{u}");
-        assert!(others.iter().all(|field| field[0][0].norm() < 1e-10) && first[0][1].norm() == 0.0);
+        assert!(within((u.norm() - 1e-6).abs(), 1e-9, Discretisation), "{u}");
+        assert!(
+            others.iter().all(|field| within(field[0][0].norm(), 1e-10, Discretisation))
+                && first[0][1].norm() == 0.0
+        );
         // At the end the block is where the record has it.
         let channel = run.channels.iter().find(|c| c.name == "block_displacement").unwrap();
         let series = (u * c64::from_polar(1.0, TAU * cycle.frequency_hz * cycle.window[1])).re;
-        assert!((series - channel.last.unwrap()).abs() < 5e-9, "{series} {:?}", channel.last);
+        assert!(
+            within((series - channel.last.unwrap()).abs(), 5e-9, Discretisation),
+            "{series} {:?}",
+            channel.last
+        );
     }
 
     #[test]

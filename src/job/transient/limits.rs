@@ -141,6 +141,7 @@ impl InTime<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bounds::{Origin::*, within};
     use crate::transient::{Scheme, StepMethod};
 
     /// Steps from 0.01 to 10 periods: growth is stated where it is right, of the root of the scheme that is followed.
@@ -215,9 +216,15 @@ mod tests {
                     / 100.0
                     / 1000.0;
                 let own = scheme.own_growth(turn, 1.0);
-                assert!(own <= 1e-12 && (own < -1e-9) == damps, "{scheme:?} {turn} {own}");
+                assert!(
+                    within(own, 1e-12, RoundOff) && (own < -0.000_000_001) == damps,
+                    "{scheme:?} {turn} {own}"
+                );
                 // Round-off and what is left of the ripple, over a thousand steps.
-                assert!((fitted - own).abs() < 2e-3 * own.abs() + 2e-5, "{scheme:?} {turn}: {fitted} {own}");
+                assert!(
+                    within((fitted - own).abs(), 2e-3 * own.abs() + 2e-5, Discretisation),
+                    "{scheme:?} {turn}: {fitted} {own}"
+                );
             }
         }
     }

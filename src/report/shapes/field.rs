@@ -108,6 +108,7 @@ pub(super) fn encode(values: &[f64]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bounds::{Origin::*, within};
     use std::f64::consts::TAU;
 
     fn shape() -> Vec<[c64; 6]> {
@@ -126,9 +127,9 @@ mod tests {
         };
         let angles = || (0..20_000).map(|k| TAU * f64::from(k) / 20_000.0);
         let largest = angles().flat_map(squares).fold(0.0, f64::max);
-        assert!((largest - 1.0).abs() < 1e-6, "{largest}");
+        assert!(within((largest - 1.0).abs(), 1e-6, Discretisation), "{largest}");
         let sum = |angle: f64| squares(angle).iter().sum::<f64>();
-        assert!(angles().all(|angle| sum(angle) <= sum(0.0) + 1e-12));
+        assert!(angles().all(|angle| within(sum(angle) - sum(0.0), 1e-12, RoundOff)));
     }
 
     #[test]
@@ -136,7 +137,7 @@ mod tests {
         let factor = c64::from_polar(3.0, 1.1);
         let standing: Vec<[c64; 6]> = shape().iter().map(|u| u.map(|c| factor * c.re)).collect();
         let motion = Motion::new(&standing, &[3, 7]).unwrap();
-        assert!(motion.im.iter().all(|im| im.abs() < 1e-14) && motion.re.len() == 6);
+        assert!(motion.im.iter().all(|im| within(im.abs(), 1e-14, RoundOff)) && motion.re.len() == 6);
         assert!(Motion::new(&[[c64::new(0.0, 0.0); 6]], &[0]).is_none());
     }
 
@@ -169,10 +170,10 @@ mod tests {
                         m.re[3 * place + 1] * cos - m.im[3 * place + 1] * sin
                     })
                     .sum();
-                assert!((motion.largest * shown - exact).abs() < 1e-15, "{part} {node}");
+                assert!(within((motion.largest * shown - exact).abs(), 1e-15, RoundOff), "{part} {node}");
             }
         }
-        assert!((motion.begin + 1.0 / hz - end).abs() < 1e-15);
+        assert!(within((motion.begin + 1.0 / hz - end).abs(), 1e-15, RoundOff));
     }
 
     #[test]

@@ -235,6 +235,7 @@ fn drawn(complex: usize, in_time: bool, surface: &Surface) -> String {
 mod tests {
     use super::super::section::Item;
     use super::*;
+    use crate::bounds::{Origin::*, within};
     use crate::job::sample;
 
     fn markup(results: &RunResults) -> String {
@@ -283,7 +284,7 @@ mod tests {
             mode["set"] == "motion in time" && mode["harmonics"].as_array().unwrap().len() == 2,
             "{mode}"
         );
-        assert!((mode["begin"].as_f64().unwrap() - (0.08 - 1.0 / 1668.0)).abs() < 1e-12);
+        assert!(within((mode["begin"].as_f64().unwrap() - (0.08 - 1.0 / 1668.0)).abs(), 1e-12, RoundOff));
         assert!(mode["name"].as_str().unwrap().contains("1668.0 Hz: largest displacement 2.0"), "{mode}");
         // Without a mode it is there alone.
         results.take::<ComplexResult>();

@@ -151,6 +151,7 @@ fn clustered(geometry: &Geometry, cell: f64) -> Vec<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bounds::{Origin::*, within};
     use crate::job::sample;
 
     #[test]
@@ -162,7 +163,7 @@ mod tests {
         assert_eq!(faces, count(3) + 2 * count(4));
         assert_eq!(surface.parts[2].bars.len(), count(2));
         assert_eq!((surface.nodes.len(), surface.all_nodes), (geometry.nodes.len(), geometry.nodes.len()));
-        assert!(surface.places().iter().all(|c| c.abs() <= 1.0));
+        assert!(surface.places().iter().all(|c| (-1.0..=1.0).contains(c)));
     }
 
     #[test]
@@ -181,7 +182,7 @@ mod tests {
         };
         let fine = Surface::within(&geometry, 3, 4_000_000);
         // π (75² − 21²) mm² of the disc, 0.2 × 0.12 m² of the slider.
-        assert!((area(&fine, 1) - 0.024).abs() < 1e-12);
+        assert!(within((area(&fine, 1) - 0.024).abs(), 1e-12, RoundOff));
         for part in 0..2 {
             let ratio = area(&surface, part) / area(&fine, part);
             assert!((0.8..1.2).contains(&ratio), "{ratio}");
@@ -195,7 +196,11 @@ mod tests {
         let normals = surface.normals();
         let tilt = 1f64.to_radians();
         let disc = &normals[..3];
-        assert!((disc[0].abs() - tilt.cos()).abs() < 1e-9 && disc[1].abs() < 1e-9, "{disc:?}");
+        assert!(
+            within((disc[0].abs() - tilt.cos()).abs(), 1e-9, RoundOff)
+                && within(disc[1].abs(), 1e-9, RoundOff),
+            "{disc:?}"
+        );
         // The bar has none of its own.
         let bar = surface.parts[2].bars[1][1] as usize;
         assert_eq!(normals[3 * bar..3 * bar + 3], [0.0; 3]);

@@ -103,6 +103,7 @@ fn union(a: &[usize], b: &[usize]) -> Vec<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bounds::{Origin::*, within};
     use crate::linalg::dense::product;
     use crate::linalg::samples;
 
@@ -123,10 +124,14 @@ mod tests {
         let b = Mat::from_fn(n, 11, |i, j| ((3 * i + 5 * j) as f64).sin());
         let image = ColumnBlock::image(&RowSparse::new(&d), &Columns::of([b.as_ref()]));
         let whole = &few * &b;
-        assert!((written(n, &image) - &whole).norm_max() < 1e-13);
-        assert!((image.seen_by(&Columns::of([b.as_ref()])) - b.transpose() * &whole).norm_max() < 1e-12);
+        assert!(within((written(n, &image) - &whole).norm_max(), 1e-13, RoundOff));
+        assert!(within(
+            (image.seen_by(&Columns::of([b.as_ref()])) - b.transpose() * &whole).norm_max(),
+            1e-12,
+            RoundOff
+        ));
         let twice = ColumnBlock::whole(whole.clone()).plus(&image);
-        assert!((written(n, &twice) - &whole - &whole).norm_max() < 1e-12);
+        assert!(within((written(n, &twice) - &whole - &whole).norm_max(), 1e-12, RoundOff));
     }
 
     #[test]
@@ -144,7 +149,7 @@ mod tests {
         let again = product(few.values.as_ref(), coefficients.as_ref());
         for j in 0..25 {
             let error = (again.col(j) - values.col(j)).norm_l2();
-            assert!(error <= 1e-11 * values.col(j).norm_l2(), "{j}: {error:e}");
+            assert!(within(error, 1e-11 * values.col(j).norm_l2(), RoundOff), "{j}: {error:e}");
         }
     }
 }

@@ -1,5 +1,6 @@
 use super::region::CountedRegion;
 use super::*;
+use crate::bounds::{Origin::*, within};
 use crate::equilibrium::SteadySliding;
 use crate::equilibrium::samples::*;
 use crate::linalg::multivector::beside;
@@ -183,7 +184,7 @@ fn growth_beyond_the_band_is_found_or_named() {
         for z in spectrum.iter().filter(|z| z.re > 1.01 * slowest && z.im.abs() < 1e-9 * z.norm()) {
             diverging += 1;
             let near = modes.modes.iter().map(|m| (m.eigenvalue - z).norm()).fold(f64::INFINITY, f64::min);
-            assert!(near < 1e-6 * z.norm(), "seed {seed}: {z} {:?}", modes.warnings);
+            assert!(within(near, 1e-6 * z.norm(), Tolerance), "seed {seed}: {z} {:?}", modes.warnings);
         }
         let Some(certificate) = certificate else { continue };
         assert!(!damping || !certificate.holds(), "seed {seed}: C is indefinite, {certificate:?}");
@@ -412,15 +413,22 @@ fn bounds_hold(
         let p = z.transpose() * structure * &z;
         let e = &p - schur;
         let rho = p.partial_piv_lu().solve(&e).svd().unwrap().S().column_vector()[0].norm();
-        assert!(rho <= point.defect * (1.0 + 1e-6) + 1e-11, "kind {kind}: {rho:.2e} {:.2e}", point.defect);
+        assert!(
+            within(rho, point.defect * (1.0 + 1e-6) + 1e-11, Stated),
+            "kind {kind}: {rho:.2e} {:.2e}",
+            point.defect
+        );
         let bound = spectrum.bound(s, 0.0).unwrap();
-        assert!(rho <= bound * (1.0 + 1e-6) + 1e-11, "kind {kind}: {rho:.2e} {bound:.2e} one by one");
+        assert!(
+            within(rho, bound * (1.0 + 1e-6) + 1e-11, Stated),
+            "kind {kind}: {rho:.2e} {bound:.2e} one by one"
+        );
         for _ in 0..4 {
             let turn = random.between(0.0, 1.0) * TAU;
             let near = s + c64::new(turn.cos(), turn.sin()) * (point.reach * random.between(0.0, 1.0));
             let other = pencil.point(near, 1e-6 * top).unwrap();
             let change = (other.phase * point.phase.conj()).arg();
-            assert!(change.abs() <= 0.75f64.asin() + 1e-9, "kind {kind}: {change}");
+            assert!(within(change.abs(), 0.75f64.asin() + 1e-9, Stated), "kind {kind}: {change}");
         }
     }
 }

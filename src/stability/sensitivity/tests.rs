@@ -2,10 +2,10 @@ use super::super::exact::ExactProblem;
 use super::super::tests::{belt, damped, dense_modes, dense_spectrum, nearest, steady};
 use super::super::{ComplexMode, complex_modes};
 use super::*;
+use crate::bounds::{Origin::*, within};
 use crate::contact::{Exponential, FrictionSense, NormalLaw, SlidingLaw};
 use crate::equilibrium::samples::*;
 use crate::linalg::SparseVector;
-use crate::linalg::bounds::within;
 use crate::system::{Closing, ModalDamping};
 use std::sync::Arc;
 
@@ -154,7 +154,7 @@ fn sensitivities_of_random_systems_equal_those_of_a_rerun() {
                 let error = (rate.value - exact).norm();
                 // 1e-6: δ⁴ of the rate and of the reference. 1e-11 |λ|: ten times ε |λ| over a step of 1e-4.
                 assert!(
-                    within(error, 1e-6 * exact.norm() + 1e-11 * l.norm(), "discretisation, round-off ε|λ|/δ"),
+                    within(error, 1e-6 * exact.norm() + 1e-11 * l.norm(), Reference),
                     "seed {seed}, {scalar:?}: {} {exact}: {:.1e}",
                     rate.value,
                     error / exact.norm()
@@ -197,8 +197,8 @@ fn derivatives_of_a_mass_on_a_belt_are_those_of_the_closed_form() {
         (slope(load, Domain::Inside, &|n| build(0.0, n, velocity)), 0.5 * fall),
         (slope(velocity, Domain::Inside, &|v| build(0.0, load, v)), -0.5 * alpha * load * fall),
     ] {
-        assert!((rate.value.re - exact).abs() < 1e-10, "{} {exact}", rate.value);
-        assert!(rate.error < 1e-5 * exact.abs());
+        assert!(within((rate.value.re - exact).abs(), 1e-10, RoundOff), "{} {exact}", rate.value);
+        assert!(within(rate.error, 1e-5 * exact.abs(), Tolerance));
     }
 }
 
@@ -221,7 +221,7 @@ fn ratios_of_modal_damping_enter_exactly() {
     let rates = sensitivity.change_by_ratios(&vec![1.0; real.len()]);
     for (rate, exact) in rates.iter().zip(by_rerun(&build, 0.01, 1e-4, &lambda)) {
         // δ⁴ at a step of a hundredth of the ratio.
-        assert!(within((rate - exact).norm(), 1e-6 * exact.norm(), "discretisation"), "{rate} {exact}");
+        assert!(within((rate - exact).norm(), 1e-6 * exact.norm(), Discretisation), "{rate} {exact}");
     }
 }
 
@@ -261,10 +261,7 @@ fn advice_agrees_with_a_thing_really_mounted() {
                 (advice[j][r].by_damping, by_damping[j]),
             ] {
                 let bound = 1e-6 * exact.norm() + 1e-12 * lambda[j].norm();
-                assert!(
-                    within((rate - exact).norm(), bound, "discretisation, round-off ε|λ|/δ"),
-                    "{r} {j}: {rate} {exact}"
-                );
+                assert!(within((rate - exact).norm(), bound, Reference), "{r} {j}: {rate} {exact}");
             }
             let left_over = |m: f64| {
                 let system = mounted(row, m, 0.0, 0.0);
@@ -275,7 +272,7 @@ fn advice_agrees_with_a_thing_really_mounted() {
             // What is of third order, the error of the advice itself, and round-off ε |λ| / m, times ten.
             let round_off = 10.0 * f64::EPSILON * lambda[j].norm() / 5e-4;
             let bound = 0.1 * coarse + 1e-6 * advice[j][r].by_mass.norm() + round_off;
-            assert!(within((coarse - 2.0 * fine).abs(), bound, "third order in the mass"), "{coarse} {fine}");
+            assert!(within((coarse - 2.0 * fine).abs(), bound, Theory), "{coarse} {fine}");
         }
     }
 }

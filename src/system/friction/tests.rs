@@ -1,6 +1,7 @@
 //! Springs between masses with friction contacts, given as matrices in every way in which other programs write them.
 
 use super::*;
+use crate::bounds::{Origin::*, within};
 use crate::linalg::matrix_market::MarketMatrix;
 use crate::linalg::random::Random;
 use crate::linalg::samples;
@@ -79,18 +80,21 @@ fn the_structure_of_contacts_with_friction_has_no_negative_eigenvalue() {
             let structure = found.structure.stiffness.to_dense();
             let words = format!("{way:?}, {points} points of {k:e}, μ {mu}, slant {slant}");
             let (values, _) = symmetric_eigen(structure.as_ref()).unwrap();
-            assert!(values[0] > -1e-15 * size * 60.0, "{words}: {}", values[0]);
+            assert!(within(-values[0], 60.0 * 1e-15 * size, RoundOff), "{words}: {}", values[0]);
             let rest = found.coupling.as_ref().unwrap();
             // One force and one motion a point; more where K alone does not show which is which.
             assert!(rest.directions.len() <= 4 * points, "{words}: {}", rest.directions.len());
             let [rest, _] = rest.assembled(structure.nrows()).unwrap();
             let error = (&structure + rest.to_dense() - &all).norm_max();
-            // A few roundings of the largest entry.
-            assert!(error <= 20.0 * f64::EPSILON * size, "{words}: {error:e} of {size:e}");
+            // A few roundings for each of up to seven points in the largest entry.
+            assert!(within(error, 100.0 * f64::EPSILON * size, RoundOff), "{words}: {error:e} of {size:e}");
             if way != Way::All {
                 // The contact as it is: closed, with its friction whole.
                 let closed = (&structure - &parts[0] - &parts[1]).norm_max();
-                assert!(closed <= 20.0 * f64::EPSILON * size, "{words}: {closed:e} of {size:e}");
+                assert!(
+                    within(closed, 100.0 * f64::EPSILON * size, RoundOff),
+                    "{words}: {closed:e} of {size:e}"
+                );
             }
         }
     }
@@ -106,5 +110,5 @@ fn a_coupling_of_many_rows_is_taken_by_its_columns() {
     assert!(holding.val().is_empty() && terms.len() == 1, "{} terms", terms.len());
     let [whole, _] = low_rank(terms, 2).unwrap().assembled(n).unwrap();
     let difference = add_scaled(&[(1.0, &whole), (-1.0, &term)]);
-    assert!(difference.val().iter().all(|v| v.abs() < 1e-12 * n as f64));
+    assert!(difference.val().iter().all(|v| within(v.abs(), 1e-12 * n as f64, RoundOff)));
 }

@@ -2,6 +2,7 @@
 
 use super::super::*;
 use super::{full_newton_agrees, plan, schemes};
+use crate::bounds::{Origin::*, within};
 use crate::contact::{Coulomb, NormalLaw, SlidingLaw};
 use crate::equilibrium::samples::{pair, point, random_system, structure, vector};
 use crate::equilibrium::{SteadyOptions, solve_steady};
@@ -32,7 +33,11 @@ fn the_sum_of_the_normal_forces_is_the_load_in_motion() {
             let expected = load * profile.factor(moment.state.time);
             let found = sum(&moment.state);
             // The round-off of an approach beside the penetration that carries the load.
-            assert!((found / expected - 1.0).abs() < 1e-10, "{seed} {}: {found} {expected}", moment.step);
+            assert!(
+                within((found / expected - 1.0).abs(), 1e-10, RoundOff),
+                "{seed} {}: {found} {expected}",
+                moment.step
+            );
             opened += (0..4).filter(|p| moment.state.contact_forces(*p)[0] == 0.0).count();
             Ok(())
         })
@@ -81,7 +86,7 @@ fn friction_of_a_load_that_is_kept_is_a_constant_force() {
             for (i, part) in [1.0, s].into_iter().enumerate() {
                 let off = moment.state.motion[(i, 0)] - origin[i] - 0.1 * part * turn.cos();
                 // Newmark's amplitude of a start with the exact acceleration is off by (ωΔt)²/4, 1e-5 of it, at most.
-                assert!(off.abs() < 1e-5, "{stiffness} {}: {off:e}", moment.step);
+                assert!(within(off.abs(), 1e-5, Discretisation), "{stiffness} {}: {off:e}", moment.step);
             }
             Ok(())
         })

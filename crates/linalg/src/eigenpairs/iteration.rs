@@ -146,6 +146,7 @@ mod tests {
     use super::*;
     use crate::samples;
     use std::sync::atomic::{AtomicUsize, Ordering};
+    use stridor_base::bounds::{Origin::*, within};
 
     /// An eigensolver that misses one of the nearest pairs, the first few times.
     #[derive(Debug)]
@@ -195,7 +196,7 @@ mod tests {
             }
             let (values, all_of_m) = found.unwrap();
             assert!(
-                values.iter().zip(&all).all(|(a, b)| (a - b).abs() < 1e-9 * bound),
+                values.iter().zip(&all).all(|(a, b)| within((a - b).abs(), 1e-9 * bound, Tolerance)),
                 "{values:?}, {all:?}"
             );
             assert!(!all_of_m, "M reaches more");

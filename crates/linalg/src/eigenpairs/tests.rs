@@ -1,9 +1,9 @@
-use super::super::bounds::within;
 use super::super::dense::definite_pencil;
 use super::super::factor::{factorize, singular};
 use super::super::samples;
 use super::super::sparse::entry;
 use super::*;
+use stridor_base::bounds::{Origin::*, within};
 
 fn check(m: &SparseMatrix, pairs: &Eigenpairs) {
     check_to(1e-13, m, pairs);
@@ -13,8 +13,8 @@ fn check_to(worst: f64, m: &SparseMatrix, pairs: &Eigenpairs) {
     let mx = times(m, pairs.vectors.as_ref());
     let g = gram(pairs.vectors.as_ref(), mx.as_ref());
     let count = pairs.values.len();
-    assert!((g - Mat::<f64>::identity(count, count)).norm_max() < 1e-12, "M-orthonormal");
-    assert!(pairs.backward_errors.iter().all(|e| *e < worst), "{:?}", pairs.backward_errors);
+    assert!(within((g - Mat::<f64>::identity(count, count)).norm_max(), 1e-12, RoundOff), "M-orthonormal");
+    assert!(pairs.backward_errors.iter().all(|e| within(*e, worst, Stated)), "{:?}", pairs.backward_errors);
     assert_eq!(pairs.sturm.counted, [count; 2]);
     assert!(pairs.sturm.shifts[0] <= pairs.sturm.bound && pairs.sturm.bound <= pairs.sturm.shifts[1]);
 }
@@ -29,7 +29,7 @@ fn membrane_with_double_eigenvalues() {
         for (value, exact) in pairs.values.iter().zip(&exact) {
             // Ten times ε ‖K‖, which the lowest cannot be better than.
             let bound = 1e-12 * exact + 10.0 * f64::EPSILON * 8.0;
-            assert!(within((value - exact).abs(), bound, "round-off ε ‖K‖"), "{value} {exact}");
+            assert!(within((value - exact).abs(), bound, RoundOff), "{value} {exact}");
         }
         match wanted {
             Wanted::Below(bound) => {
@@ -50,7 +50,7 @@ fn free_chain_has_its_rigid_body_mode() {
         check(&m, &pairs);
         for (j, value) in pairs.values.iter().enumerate() {
             let exact = 4.0 * (j as f64 * std::f64::consts::PI / (2 * n) as f64).sin().powi(2);
-            assert!((value - exact).abs() < 1e-13, "{n} {j} {value} {exact}");
+            assert!(within((value - exact).abs(), 1e-13, RoundOff), "{n} {j} {value} {exact}");
         }
     }
 }
@@ -64,7 +64,7 @@ fn a_free_body_gives_its_rigid_motions_however_few_are_wanted() {
         assert_eq!(pairs.values.len(), 3, "{size} {count}");
         assert_eq!(pairs.sturm.counted, [3; 2]);
         let elastic = lowest_eigenpairs(&k, &m, Wanted::Count(4), &()).unwrap().values[3];
-        assert!(pairs.values.iter().all(|v| v.abs() < 1e-6 * elastic), "{:?}", pairs.values);
+        assert!(pairs.values.iter().all(|v| within(v.abs(), 1e-6 * elastic, RoundOff)), "{:?}", pairs.values);
     }
 }
 
@@ -108,7 +108,7 @@ fn factors_at_hand_find_the_same_pairs() {
         let below = exact.iter().filter(|v| **v < pairs.sturm.bound).count();
         assert!(pairs.values.len() == below && below >= exact.iter().filter(|v| **v < bound).count());
         for (value, exact) in pairs.values.iter().zip(&exact) {
-            assert!((value - exact).abs() < 1e-12 * exact, "{value} {exact}");
+            assert!(within((value - exact).abs(), 1e-12 * exact, RoundOff), "{value} {exact}");
         }
     }
     let factor = factorize(&k).unwrap();
@@ -124,9 +124,12 @@ fn free_plate_agrees_with_the_dense_solver() {
     check(&m, &pairs);
     assert_eq!(pairs.values.len(), 41);
     for (value, dense) in pairs.values.iter().zip(&values) {
-        assert!((value - dense).abs() < 1e-14 * values[values.len() - 1], "{value} {dense}");
+        assert!(within((value - dense).abs(), 1e-14 * values[values.len() - 1], RoundOff), "{value} {dense}");
     }
-    assert!(pairs.values[..3].iter().all(|v| v.abs() < 1e-6 * pairs.values[3]), "three rigid-body modes");
+    assert!(
+        pairs.values[..3].iter().all(|v| within(v.abs(), 1e-6 * pairs.values[3], RoundOff)),
+        "three rigid-body modes"
+    );
 }
 
 #[test]
@@ -148,7 +151,7 @@ fn massless_degrees_of_freedom_have_no_finite_eigenvalue() {
                 // η ‖K‖₁ ‖x‖² with the backward error that is aimed at, 1e-14, and ‖x‖² = 10 for masses 1 on every tenth point;
                 // round-off adds as much.
                 let bound = 10.0 * 2.0 * 1e-14 * 4.0 * 10.0;
-                assert!(within((value - exact(j)).abs(), bound, "backward error of the pairs"), "{n} {j}");
+                assert!(within((value - exact(j)).abs(), bound, RoundOff), "{n} {j}");
             }
         }
     }
@@ -221,14 +224,14 @@ fn negative_eigenvalues_belong_to_the_lowest() {
         let exact = samples::membrane_eigenvalues(side);
         // The fifth and sixth are one double eigenvalue: K is singular, too.
         let load = exact[4];
-        assert!((exact[5] - load).abs() < 1e-12);
+        assert!(within((exact[5] - load).abs(), 1e-12, RoundOff));
         let buckled = add_scaled(&[(1.0, &k), (-load, &m)]);
         let bound = 0.5 * (exact[12] + exact[13]) - load;
         for wanted in [Wanted::Below(bound), Wanted::Count(3), Wanted::Count(13)] {
             let pairs = lowest_eigenpairs(&buckled, &m, wanted, &()).unwrap();
             check(&m, &pairs);
             assert!(
-                pairs.values.iter().zip(&exact).all(|(v, e)| (v - (e - load)).abs() < 1e-12),
+                pairs.values.iter().zip(&exact).all(|(v, e)| within((v - (e - load)).abs(), 1e-12, RoundOff)),
                 "{wanted:?}"
             );
         }

@@ -50,6 +50,7 @@ mod tests {
     use super::super::super::sparse::add_scaled;
     use super::super::factorize;
     use super::*;
+    use stridor_base::bounds::{Origin::*, within};
 
     /// Against whole solutions, for numbers of columns on either side of the lanes and of those that go together.
     #[test]
@@ -66,7 +67,7 @@ mod tests {
             factor.solve_in_place(x.as_mut());
             let expected = gram(f.as_ref(), x.as_ref());
             let found = compliances(&*factor, f.clone().as_mut());
-            assert!((&found - &expected).norm_max() < 1e-11 * expected.norm_max());
+            assert!(within((&found - &expected).norm_max(), 1e-11 * expected.norm_max(), RoundOff));
         }
     }
 

@@ -219,6 +219,7 @@ fn down<T: Field, L: Lanes<T>, const C: usize, const P: usize>(l: &[T], names: &
 #[cfg(test)]
 mod tests {
     use super::*;
+    use stridor_base::bounds::{Origin::*, within};
 
     #[test]
     fn substitutions_equal_sums_over_columns() {
@@ -258,7 +259,11 @@ mod tests {
             }
             for (found, expected) in up.iter().chain(&down).zip(up_expected.iter().chain(&down_expected)) {
                 (0..2).for_each(|k| {
-                    assert!((found[k] - expected[k]).abs() < 1e-10 * expected[k].abs().max(1.0))
+                    assert!(within(
+                        (found[k] - expected[k]).abs(),
+                        1e-10 * expected[k].abs().max(1.0),
+                        RoundOff
+                    ))
                 });
             }
         }

@@ -256,6 +256,7 @@ mod tests {
     use super::super::super::sparse::columns;
     use super::super::{combine_by_ranges, gram_by_ranges};
     use super::*;
+    use stridor_base::bounds::{Origin::*, within};
 
     #[test]
     fn kernels_equal_general_products() {
@@ -265,17 +266,17 @@ mod tests {
             let (v, x, c) = (wave(n, m, 1.0), wave(n, w, 0.7), wave(m, w, 1.3));
             let [v_columns, x_columns] = [&v, &x].map(|a| columns(a.as_ref()).unwrap());
             let square = gram(n, &v_columns, &x_columns);
-            assert!((square - gram_by_ranges(v.as_ref(), x.as_ref())).norm_max() <= 1e-11);
+            assert!(within((square - gram_by_ranges(v.as_ref(), x.as_ref())).norm_max(), 1e-11, RoundOff));
             for accumulate in [Accum::Replace, Accum::Add] {
                 let (mut y, mut expected) = (x.clone(), x.clone());
                 assert!(combine(y.as_mut(), c.as_ref(), accumulate, &v_columns, -0.5));
                 combine_by_ranges(expected.as_mut(), accumulate, v.as_ref(), c.as_ref(), -0.5);
-                assert!((y - expected).norm_max() <= 1e-12);
+                assert!(within((y - expected).norm_max(), 1e-12, RoundOff));
             }
             for c in [wave(m, m, 1.3), wave(m, m / 2, 0.3)] {
                 let (mut turned, expected) = (v.clone(), &v * &c);
                 rotate(columns_mut(turned.as_mut()).unwrap(), c.as_ref());
-                assert!((turned.subcols(0, c.ncols()) - expected).norm_max() <= 1e-12);
+                assert!(within((turned.subcols(0, c.ncols()) - expected).norm_max(), 1e-12, RoundOff));
             }
         }
     }
@@ -293,15 +294,21 @@ mod tests {
         let mut sums = vec![[0.0; LANES]; m];
         Dots { a: &a, b: &b, rows: 3..n, sums: &mut sums }.run::<4>();
         let expected = gram_by_ranges(v.subrows(3, n - 3), x.subrows(3, n - 3));
-        assert!((0..m).all(|i| (0..LANES).all(|j| (sums[i][j] - expected[(i, j)]).abs() < 1e-11)));
+        assert!((0..m).all(|i| (0..LANES).all(|j| within(
+            (sums[i][j] - expected[(i, j)]).abs(),
+            1e-11,
+            RoundOff
+        ))));
         let mut y = vec![vec![1.0; n - 3]; TOGETHER];
         let mut columns: Vec<&mut [f64]> = y.iter_mut().map(|column| &mut column[..]).collect();
         let rows: Vec<[f64; TOGETHER]> = (0..m).map(|i| std::array::from_fn(|k| c[(i, k)])).collect();
         Sums { y: &mut columns, anew: false, first: 3, v: &a, c: &rows }.run::<8>();
         let expected = &v * &c;
-        assert!(
-            (0..n - 3).all(|i| (0..TOGETHER).all(|k| (y[k][i] - 1.0 - expected[(i + 3, k)]).abs() < 1e-12))
-        );
+        assert!((0..n - 3).all(|i| (0..TOGETHER).all(|k| within(
+            (y[k][i] - 1.0 - expected[(i + 3, k)]).abs(),
+            1e-12,
+            RoundOff
+        ))));
     }
 
     #[test]

@@ -186,6 +186,7 @@ mod tests {
     use super::super::super::sparse::times;
     use super::*;
     use faer::Mat;
+    use stridor_base::bounds::{Origin::*, within};
 
     #[test]
     fn sums_and_forms_equal_those_of_products_that_are_written_down() {
@@ -210,12 +211,16 @@ mod tests {
                 for i in 0..n {
                     let terms = products.iter().enumerate().map(|(a, p)| factor(a, j) * at(p, i, j));
                     let sum: c64 = terms.sum();
-                    assert!((at(&y, i, j) - at(&before, i, j) - sum).norm() < 1e-12 * (1.0 + sum.norm()));
+                    assert!(within(
+                        (at(&y, i, j) - at(&before, i, j) - sum).norm(),
+                        1e-12 * (1.0 + sum.norm()),
+                        RoundOff
+                    ));
                 }
                 for (test, forms) in tests.iter().zip(&forms) {
                     for (a, product) in products.iter().enumerate() {
                         let form: c64 = (0..n).map(|i| at(test, i, j).conj() * at(product, i, j)).sum();
-                        assert!((forms[j][a] - form).norm() < 1e-11 * n as f64);
+                        assert!(within((forms[j][a] - form).norm(), 1e-11 * n as f64, RoundOff));
                     }
                 }
             }

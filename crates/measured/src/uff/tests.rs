@@ -1,4 +1,5 @@
 use super::*;
+use stridor_base::bounds::{Origin::*, within};
 use stridor_linalg::c64;
 
 const SI: Unstated = Unstated { unit: 1.0, quantity: None };
@@ -46,11 +47,14 @@ const SIX: &str = "    -1\n    55\nNONE\nNONE\nNONE\nNONE\nNONE\n         1     
 fn modes_of_both_kinds_are_read() {
     let text = [UNITS, NODES, COMPLEX, SIX].concat();
     let records = read("t", text.as_bytes(), SI).unwrap();
-    assert!((records.points[&1][0] - 0.015).abs() < 1e-15 && (records.points[&3][1] - 0.075).abs() < 1e-15);
+    assert!(
+        within((records.points[&1][0] - 0.015).abs(), 1e-15, RoundOff)
+            && within((records.points[&3][1] - 0.075).abs(), 1e-15, RoundOff)
+    );
     let [complex, six] = &records.modes[..] else { panic!("two modes") };
     // λ = −2π + 628.287 i: |λ| = 628.318, f = 100 Hz, ζ = 1 %.
-    assert!((complex.frequency_hz - 100.0).abs() < 1e-3);
-    assert!((complex.damping_ratio.unwrap() - 0.01).abs() < 1e-6);
+    assert!(within((complex.frequency_hz - 100.0).abs(), 1e-3, Reference));
+    assert!(within((complex.damping_ratio.unwrap() - 0.01).abs(), 1e-6, Reference));
     assert_eq!(complex.shape[&3], [c64::new(1.0, 2.0), c64::new(0.0, 0.0), c64::new(-3.0, 4.0)]);
     assert_eq!((six.frequency_hz, six.damping_ratio), (50.0, Some(0.02)));
     assert_eq!(six.shape[&1].map(|u| u.re), [1.0, 2.0, 3.0]);
@@ -72,7 +76,7 @@ fn functions_in_text_are_read_in_every_form() {
     assert_eq!(real.values[1], c64::new(-2.5, 0.0));
     // In a file in mm and mN whose force is labelled N, numbers are (mm/s²)/N.
     let scaled = of(&(UNITS.to_string() + &text_58(2, 1, true, "  7.00000E+00\n")));
-    assert!((scaled.values[0].re - 7e-3).abs() < 1e-15);
+    assert!(within((scaled.values[0].re - 7e-3).abs(), 1e-15, RoundOff));
 }
 
 #[test]
@@ -97,7 +101,10 @@ fn binary_functions_are_read_in_both_orders_and_sizes() {
         assert_eq!(function.frequencies_hz, [5.0, 6.0]);
         // The label of the ordinate says g.
         let exact = 9.80665 * c64::new(1.5, -2.5);
-        assert!((function.values[0] - exact).norm() < 1e-12 && function.values[1].im == 9.80665 * 4.0);
+        assert!(
+            within((function.values[0] - exact).norm(), 1e-12, RoundOff)
+                && function.values[1].im == 9.80665 * 4.0
+        );
     }
 }
 
@@ -342,7 +349,7 @@ fn coordinate_systems_are_applied() {
                     let force = records.functions[0].excitation.1;
                     let (set, _) = records.into_set();
                     let found = nalgebra::Vector3::from(set.points[0].position);
-                    assert!((found - place).norm() < 1e-12, "{file}");
+                    assert!(within((found - place).norm(), 1e-12, RoundOff), "{file}");
                     let values = set.modes[0].shape.clone().unwrap();
                     let sum: nalgebra::Vector3<f64> = set
                         .dofs
@@ -350,9 +357,9 @@ fn coordinate_systems_are_applied() {
                         .zip(&values)
                         .map(|(dof, v)| nalgebra::Vector3::from(dof.direction) * v.re)
                         .sum();
-                    assert!((sum - expected).norm() < 1e-12, "{file}");
+                    assert!(within((sum - expected).norm(), 1e-12, RoundOff), "{file}");
                     // The force acts along the first of its own directions.
-                    assert!((nalgebra::Vector3::from(force) - axes[0]).norm() < 1e-15);
+                    assert!(within((nalgebra::Vector3::from(force) - axes[0]).norm(), 1e-15, RoundOff));
                 }
             }
         }

@@ -132,6 +132,7 @@ fn with_middles(kind: CellKind, corners: Vec<Vec<usize>>, mesh: &mut Mesh) -> Ve
 #[cfg(test)]
 mod tests {
     use super::*;
+    use stridor_base::bounds::{Origin::*, within};
 
     #[test]
     fn boxes_of_every_kind_are_sound_and_have_their_volume() {
@@ -153,7 +154,7 @@ mod tests {
                     volume += point.weight * j.determinant();
                 }
             }
-            assert!((volume - 0.1).abs() < 1e-14, "{kind:?}: {volume}");
+            assert!(within((volume - 0.1).abs(), 1e-14, RoundOff), "{kind:?}: {volume}");
             // All of the skin is in one of the six faces.
             let skin = mesh.skin(0..mesh.elements.len()).len();
             let named: usize = mesh.regions[1..].iter().map(|region| region.elements.len()).sum();

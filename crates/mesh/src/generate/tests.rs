@@ -3,6 +3,7 @@ use crate::quality::face_shape;
 use crate::{Mesh, diagnose};
 use std::collections::BTreeSet;
 use std::f64::consts::PI;
+use stridor_base::bounds::{Origin::*, within};
 
 fn smallest_angle_deg(mesh: &Mesh) -> f64 {
     let angles = mesh.elements.iter().filter_map(|e| face_shape(mesh, e)).map(|s| s.angles[0].to_degrees());
@@ -55,7 +56,7 @@ fn the_medium_rig_is_fine_within_two_millimetres_of_the_contact() {
                 p[0].hypot(p[1]).hypot(if region == "disc" { p[2] + 0.075 } else { 0.0 }) < 2e-3
             });
             let edges = face_shape(&mesh, &mesh.elements[*e]).unwrap().edges;
-            assert!(!near || (edges[0] > 0.2e-3 && edges[1] < 0.65e-3), "{edges:?}");
+            assert!(!near || edges.iter().all(|edge| (0.2e-3..0.65e-3).contains(edge)), "{edges:?}");
             assert!(edges[1] < if region == "disc" { 5e-3 } else { 12e-3 });
         }
     }
@@ -86,7 +87,7 @@ fn meshes_are_mirror_images_of_themselves_and_turned_alike() {
 fn areas_are_those_of_the_polygons() {
     let annulus = structured_annulus(0.02, 0.075, 5, 40).unwrap();
     let polygon = |r: f64| 20.0 * r * r * (2.0 * PI / 40.0).sin();
-    assert!((area(&annulus, "disc") / (polygon(0.075) - polygon(0.02)) - 1.0).abs() < 1e-13);
+    assert!(within((area(&annulus, "disc") / (polygon(0.075) - polygon(0.02)) - 1.0).abs(), 1e-13, RoundOff));
     let spec = PlateSpec {
         length: 0.2,
         width: 0.12,
@@ -94,12 +95,12 @@ fn areas_are_those_of_the_polygons() {
         grading: Grading::graded(1e-3, 2e-3, 9e-3),
     };
     let mesh = plate(&spec).unwrap();
-    assert!((area(&mesh, "slider") / 0.024 - 1.0).abs() < 1e-13);
+    assert!(within((area(&mesh, "slider") / 0.024 - 1.0).abs(), 1e-13, RoundOff));
     assert!(mesh.nodes.contains(&[0.03, -0.02, 0.0]) && smallest_angle_deg(&mesh) > 25.0);
     assert!(diagnose(&mesh).faults.0.is_empty());
     let full =
         disc(&DiscSpec { outer_radius: 0.075, hub_radius: 0.0, grading: Grading::uniform(4e-3) }).unwrap();
-    assert!((area(&full, "disc") / (PI * 0.075 * 0.075) - 1.0).abs() < 1e-3);
+    assert!(within((area(&full, "disc") / (PI * 0.075 * 0.075) - 1.0).abs(), 1e-3, Discretisation));
     assert!(full.region("hub").is_none() && smallest_angle_deg(&full) > 25.0);
     assert!(diagnose(&full).warnings.is_empty() && diagnose(&full).faults.0.is_empty());
 }
@@ -113,7 +114,11 @@ fn rim_and_hub_are_closed_and_lie_on_their_circles() {
         assert_eq!(nodes.len(), region.elements.len());
         for n in nodes {
             let [x, y, z] = mesh.nodes[n];
-            assert!(x == 0.0 && (y.hypot(z) / radius - 1.0).abs() < 1e-15, "{:?}", mesh.nodes[n]);
+            assert!(
+                x == 0.0 && within((y.hypot(z) / radius - 1.0).abs(), 20.0 * f64::EPSILON, RoundOff),
+                "{:?}",
+                mesh.nodes[n]
+            );
         }
         // Each line starts where the one before ends.
         let ends: Vec<&[usize]> = region.elements.iter().map(|e| mesh.elements[*e].nodes()).collect();
@@ -153,10 +158,10 @@ fn wrong_specifications_are_explained() {
 fn a_pad_lies_on_the_face_of_its_disc() {
     let spec = PadOnDiscSpec::example();
     let mesh = pad_on_disc(&spec).unwrap();
-    assert!((area(&mesh, "pad") / 6e-4 - 1.0).abs() < 1e-13);
+    assert!(within((area(&mesh, "pad") / 6e-4 - 1.0).abs(), 1e-13, RoundOff));
     for e in &mesh.require("pad", 2).unwrap().elements {
         let normal = face_shape(&mesh, &mesh.elements[*e]).unwrap().normal;
-        assert!((normal[0] - 1.0).abs() < 1e-15);
+        assert!(within((normal[0] - 1.0).abs(), 1e-15, RoundOff));
         assert!(mesh.elements[*e].nodes().iter().all(|n| mesh.nodes[*n][0] == 3e-3));
     }
     assert!(diagnose(&mesh).faults.0.is_empty() && diagnose(&mesh).warnings.is_empty());
