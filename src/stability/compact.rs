@@ -73,9 +73,9 @@ mod tests {
     use super::super::tests::{damped, dense_eigenvalues, dense_modes, nearest, steady};
     use super::super::{ClosedContact, Family, FamilyFrame, SlidingState};
     use super::LARGE;
+    use crate::bounds::{Origin::*, within};
     use crate::equilibrium::SteadySliding;
     use crate::equilibrium::samples::random_system;
-    use crate::linalg::bounds::within;
     use crate::linalg::c64;
     use std::f64::consts::TAU;
 
@@ -121,8 +121,11 @@ mod tests {
                 assert_eq!(found.eigenvalues.len(), exact.len(), "seed {seed}");
                 for (z, estimate) in found.eigenvalues.iter().zip(&check.eigenvalue_errors) {
                     let error = (z - nearest(*z, &exact)).norm() / z.norm();
-                    assert!(within(error, 1e-6, "interpolation between the members"), "seed {seed}: {z}");
-                    assert!(error < 10.0 * estimate + 1e-10, "seed {seed}: {error:.1e} {estimate:.1e}");
+                    assert!(within(error, 1e-6, Discretisation), "seed {seed}: {z}");
+                    assert!(
+                        within(error, 10.0 * estimate + 1e-10, Stated),
+                        "seed {seed}: {error:.1e} {estimate:.1e}"
+                    );
                 }
             }
         }

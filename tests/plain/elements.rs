@@ -71,7 +71,8 @@ fn patch_test_membrane_with_drilling_and_bending_in_any_plane() {
         let kio = k.select_rows(&inner).select_columns(&outer);
         let solved = -kii.lu().solve(&(kio * exact.select_rows(&outer))).unwrap();
         let error = (solved - exact.select_rows(&inner)).norm() / exact.select_rows(&inner).norm();
-        assert!(within(error, 1e-12, RoundOff), "{error:e}");
+        // Round-off of membrane forces beside bending: (l/h)² ε is 1e-12, times ten.
+        assert!(within(error, 1e-11, RoundOff), "{error:e}");
 
         // And the energy is that of the constant strains and curvatures, whatever the mesh.
         let elasticity = dkt::plane_stress(steel().youngs_modulus, 0.3);

@@ -7,6 +7,7 @@ mod python;
 
 mod architecture;
 mod belt;
+mod bounds;
 mod circles;
 mod closed_forms;
 mod constraints;
