@@ -1,8 +1,8 @@
 //! Every assertion that holds an error against a small bound does so by `bounds::within(error, bound, origin)`, which says where the
 //! bound comes from and keeps a record of how much of it is used.
 //!
-//! Recognised by the text, in the condition of every `assert!` of the repository and in closures and functions of one file that such a
-//! condition calls: `a < b` and `a <= b` where b has a number with a negative exponent or an `EPSILON` in it, or where a ends with
+//! Recognised by the text, in the condition of every `assert!` of the repository and in closures of one expression and private functions of
+//! the file that such a condition calls: `a < b` and `a <= b` where b has a number with a negative exponent or an `EPSILON` in it, or where a ends with
 //! `.abs()` or a norm; and `b > a`, `b >= a` with such a b. Statements of order (`growth > 1e-3`, `a < b`) are not of this kind.
 
 use std::ops::Range;
@@ -277,9 +277,12 @@ fn comparisons_by_hand_are_recognised_and_statements_of_order_are_not() {
         }
     }
     // Outside of assertions a distance may be measured by hand.
-    for text in
-        ["let k = all.iter().position(|b| (a - b).abs() < 1e-9);", "if error < 1e-9 { assert!(found); }"]
-    {
+    for text in [
+        "let k = all.iter().position(|b| (a - b).abs() < 1e-9);",
+        "if error < 1e-9 { assert!(found); }",
+        "let at = |x| { all.iter().position(|y| (x - y).abs() < 1e-9) };\nassert!(at(x).is_some());",
+        "pub fn steady(&self) -> bool { self.drift.abs() < 1e-3 }\nfn test() { assert!(cycle.steady()); }",
+    ] {
         assert!(by_hand(text).is_empty(), "{text}");
     }
     assert_eq!(by_hand("\n\nassert!(x < 1e-9);")[0], (3, "x < 1e-9".to_string()));
