@@ -97,7 +97,7 @@ mod tests {
     use super::super::general::tests::rotating;
     use super::super::tests::{dense_eigenvalues, dense_modes, nearest, steady};
     use super::super::{Family, FamilyFrame, SlidingState, complex_modes};
-    use crate::linalg::bounds::within;
+    use crate::bounds::{Origin::*, within};
     use crate::linalg::c64;
 
     /// A third of the real modes, gyroscopic and circulatory forces from a hundredth to once those of the structure: modes of the dense
@@ -117,23 +117,20 @@ mod tests {
             for mode in &found.modes {
                 let z = mode.eigenvalue;
                 let error = (nearest(z, &exact) - z).norm() / z.norm();
-                assert!(
-                    within(error, 1e-9, "tolerance of the refinement") && mode.accepted(),
-                    "seed {seed}: {z}"
-                );
+                assert!(within(error, 1e-9, Tolerance) && mode.accepted(), "seed {seed}: {z}");
                 let growth = (mode.growth.total() - z.re).abs() / z.norm();
-                assert!(within(growth, 1e-7, "vectors after refinement"), "seed {seed}: {growth:.1e}");
+                assert!(within(growth, 1e-7, Tolerance), "seed {seed}: {growth:.1e}");
             }
             projected += usize::from(!found.warnings.iter().any(|w| w.contains("two-level Arnoldi")));
             let frame = FamilyFrame::new(&system, &[], &real, Vec::new(), band).unwrap();
             let member = SlidingState { points: state.points.clone(), damping_weights: vec![1.0] };
             let mut family = Family::new(&frame, std::slice::from_ref(&member)).unwrap();
-            assert!(family.train(&member).unwrap().worst() < 1e-9, "seed {seed}");
+            assert!(within(family.train(&member).unwrap().worst(), 1e-9, Tolerance), "seed {seed}");
             let of_family: Vec<c64> = family.modes(&member).unwrap().eigenvalues;
             assert_eq!(of_family.len(), exact.len());
             for z in of_family {
                 let error = (nearest(z, &exact) - z).norm() / z.norm();
-                assert!(within(error, 1e-9, "tolerance of the training"), "seed {seed}: {z} {error:.1e}");
+                assert!(within(error, 1e-9, Tolerance), "seed {seed}: {z} {error:.1e}");
             }
         }
         assert!(projected > 3, "{projected}");

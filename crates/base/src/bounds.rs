@@ -46,8 +46,11 @@ pub fn least(errors: impl IntoIterator<Item = f64>) -> f64 {
 static FILE: LazyLock<Option<PathBuf>> =
     LazyLock::new(|| std::env::var_os("STRIDOR_TEST_BOUNDS").map(Into::into));
 
+/// File, line and column of a comparison.
+type Place = (&'static str, u32, u32);
+
 /// The largest share of its bound that each comparison has used.
-static USED: LazyLock<Mutex<HashMap<(&str, u32, u32), f64>>> = LazyLock::new(Mutex::default);
+static USED: LazyLock<Mutex<HashMap<Place, f64>>> = LazyLock::new(Mutex::default);
 
 fn record(file: &Path, at: &'static Location<'static>, error: f64, bound: f64, origin: Origin) {
     let share = if error <= 0.0 { 0.0 } else { error / bound };
