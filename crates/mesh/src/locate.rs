@@ -293,6 +293,7 @@ mod tests {
     use crate::CellKind;
     use crate::generate::structured_box;
     use crate::skin::outer_faces;
+    use stridor_base::bounds::{Origin::*, within};
 
     /// Numbers from 0 to 1.
     fn random(seed: &mut u64) -> f64 {
@@ -334,7 +335,10 @@ mod tests {
                             [2.0 * a - 1.0, 2.0 * b - 1.0, 0.0]
                         };
                         let sample = tree.point(face, at, x).distance;
-                        assert!(sample >= best.distance - 1e-12, "{kind:?} {sample} {best:?}");
+                        assert!(
+                            within(best.distance - sample, 1e-12, RoundOff),
+                            "{kind:?} {sample} {best:?}"
+                        );
                     }
                 }
                 let [a, b, _] = best.at;
@@ -347,7 +351,7 @@ mod tests {
                     let rest = minus(x, best.position);
                     for tangent in tree.tangents(best.face, best.at) {
                         // Where Newton's method stops, and rounding.
-                        assert!(dot(tangent, rest).abs() < 1e-9, "{kind:?} {best:?}");
+                        assert!(within(dot(tangent, rest).abs(), 1e-9, Tolerance), "{kind:?} {best:?}");
                     }
                 }
             }
@@ -365,7 +369,7 @@ mod tests {
             if having > 0 {
                 let found = tree.nearest(*x);
                 assert_eq!(found.len(), having, "{x:?}");
-                assert!(found.iter().all(|point| point.distance < 1e-14));
+                assert!(found.iter().all(|point| within(point.distance, 1e-14, RoundOff)));
             }
         }
         assert!(FaceTree::new(&mesh.nodes, &[]).nearest([0.0; 3]).is_empty());
