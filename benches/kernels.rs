@@ -39,6 +39,7 @@ fn plate(n: usize) -> Model {
         density: 7850.0,
         loss_factor: 0.0,
         rayleigh: RayleighDamping::default(),
+        orthotropic: None,
     };
     let faces = (0..n).flat_map(|i| (0..n).flat_map(move |j| cell(i, j))).collect();
     let part = Part::new(

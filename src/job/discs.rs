@@ -61,7 +61,7 @@ mod tests {
                 (structured_box(kind, [0.1, 0.1, 0.01], [4, 4, 1]).unwrap(), false),
             ] {
                 let cells = mesh.elements.iter().filter(|cell| cell.dimension() == 3).cloned().collect();
-                let part = Part::new("disc", cells, Solid { material: STEEL });
+                let part = Part::new("disc", cells, Solid::new(STEEL));
                 let found = disc(&part, &mesh.nodes);
                 assert_eq!(found.is_some(), is_disc, "{kind:?}");
                 assert!(found.is_none_or(|disc| disc.normal.z.abs() > 1.0 - 1e-12));

@@ -331,6 +331,7 @@ mod tests {
             density: 7850.0,
             loss_factor: 0.0,
             rayleigh: crate::structure::RayleighDamping::default(),
+            orthotropic: None,
         };
         let faces = vec![crate::mesh::Cell::quadrilateral([0, 1, 2, 3])];
         let shell = Shell { rotary_inertia: false, ..Shell::new(steel, 1e-3) };
@@ -343,7 +344,7 @@ mod tests {
             crate::mesh::generate::structured_box(CellKind::Hexahedron20, [0.3, 0.3, 1e-3], [6, 6, 1])
                 .unwrap();
         let cells = brick.elements.iter().filter(|cell| cell.dimension() == 3).cloned().collect();
-        let solid = Part::new("solid", cells, Solid { material: steel });
+        let solid = Part::new("solid", cells, Solid::new(steel));
         let model = Model { nodes: brick.nodes, parts: vec![solid], ..Model::default() };
         assert!(within((modes_below(&model, 1500.0) - 43.0).abs(), 1.0, Theory));
     }

@@ -34,8 +34,8 @@ pub fn whole_model(case: &Case, regions: &Regions, warnings: &mut Vec<String>) -
     for (name, solid) in &case.solid {
         let place = format!("`solid.{name}`");
         let cells = faults.take(regions.solids(name, solid.allow_locking, &place));
-        let material = case.material[&solid.material];
-        model.parts.push(Part::new(name, cells.unwrap_or_default(), Solid { material }));
+        let solid = Solid { material: case.material[&solid.material], integration: solid.integration };
+        model.parts.push(Part::new(name, cells.unwrap_or_default(), solid));
     }
     for (name, mass) in &case.mass {
         for node in faults.take(regions.nodes(&mass.on, &format!("`mass.{name}.on`"))).unwrap_or_default() {

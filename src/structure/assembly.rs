@@ -197,6 +197,7 @@ mod tests {
             density: 2700.0,
             loss_factor: 0.01,
             rayleigh: RayleighDamping { alpha: 2.0, beta: 1e-7 },
+            orthotropic: None,
         };
         let id = |i: usize, j: usize| i * (n + 1) + j;
         let mut nodes = Vec::new();

@@ -51,6 +51,16 @@ fn check_parts(model: &Model, faults: &mut Faults) {
     for part in &model.parts {
         let place = part.place();
         check_material(&place, part.kind.material(), faults);
+        if part.kind.material().orthotropic.is_some() && !matches!(part.kind, PartKind::Solid(_)) {
+            let fault = Fault::new(
+                &place,
+                "an orthotropic material",
+                "an isotropic one: plates and bars have no others",
+            );
+            faults.push(fault.with_help(
+                "Model the part by solids, `[solid.NAME]`, or leave `orthotropic` out of its material",
+            ));
+        }
         match &part.kind {
             PartKind::Shell(shell) => {
                 positive(&place, "thickness", shell.thickness, "m", faults);

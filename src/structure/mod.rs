@@ -36,10 +36,10 @@ pub use constraints::{ConstraintWords, check_constraints};
 pub use dofs::{DofMap, FreeDof};
 pub use elements::waves::{thickness_error, thickness_shear_frequency};
 pub use free::{FreePart, free_parts, is_free_along, unresisted_parts};
-pub use material::{Material, RayleighDamping};
+pub use material::{Material, Orthotropic, RayleighDamping};
 pub use model::{
-    Bar, Constraint, Coupling, InclinedSupport, Model, Part, PartKind, PlateTheory, PointMass, RigidLink,
-    Shell, Solid, Spring, Support,
+    Bar, Constraint, Coupling, InclinedSupport, Integration, Model, Part, PartKind, PlateTheory, PointMass,
+    RigidLink, Shell, Solid, Spring, Support,
 };
 pub use section::Section;
 pub use tie::{Tie, Tied, tied};

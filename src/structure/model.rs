@@ -38,6 +38,16 @@ choices! {
     }
 }
 
+choices! {
+    /// Quadrature of the stiffness of 20-node hexahedra.
+    pub enum Integration {
+        /// 3 × 3 × 3 points, or more where edges are curved: exact.
+        Full = "full",
+        /// 2 × 2 × 2 points, as C3D20R of Abaqus and CalculiX: softer in bending, and not locked where ν is near ½.
+        Reduced = "reduced",
+    }
+}
+
 /// A part: cells of one kind of structure.
 #[derive(Debug, Clone)]
 pub struct Part {
@@ -93,6 +103,15 @@ pub struct Bar {
 pub struct Solid {
     /// Material.
     pub material: Material,
+    /// Quadrature of 20-node hexahedra; other cells have one of their own.
+    pub integration: Integration,
+}
+
+impl Solid {
+    /// Of a material, fully integrated.
+    pub fn new(material: Material) -> Self {
+        Solid { material, integration: Integration::Full }
+    }
 }
 
 impl Model {

@@ -9,4 +9,5 @@ pub(crate) const STEEL: Material = Material {
     density: 7850.0,
     loss_factor: 0.0,
     rayleigh: RayleighDamping { alpha: 0.0, beta: 0.0 },
+    orthotropic: None,
 };

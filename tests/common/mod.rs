@@ -17,6 +17,7 @@ pub fn steel() -> Material {
         density: 7850.0,
         loss_factor: 0.0,
         rayleigh: RayleighDamping::default(),
+        orthotropic: None,
     }
 }
 

@@ -7,8 +7,14 @@ const SLIDER: f64 = 0.010;
 
 fn part(name: &str, thickness: f64, faces: Vec<Cell>) -> Part {
     let rayleigh = RayleighDamping::default();
-    let material =
-        Material { youngs_modulus: 2e11, poissons_ratio: 0.3, density: 7850.0, loss_factor: 0.0, rayleigh };
+    let material = Material {
+        youngs_modulus: 2e11,
+        poissons_ratio: 0.3,
+        density: 7850.0,
+        loss_factor: 0.0,
+        rayleigh,
+        orthotropic: None,
+    };
     Part::new(name, faces, Shell { rotary_inertia: false, ..Shell::new(material, thickness) })
 }
 

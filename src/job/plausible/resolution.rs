@@ -76,7 +76,7 @@ mod tests {
         // A brick of the same size has as many nodes along its sides as two elements of first order.
         let brick = structured_box(CellKind::Hexahedron20, [0.1, 0.1, 1e-3], [1, 1, 1]).unwrap();
         let cells = brick.elements.iter().filter(|cell| cell.dimension() == 3).cloned().collect();
-        let plate = as_plate(&Part::new("pad", cells, Solid { material: STEEL }), STEEL, &brick.nodes);
+        let plate = as_plate(&Part::new("pad", cells, Solid::new(STEEL)), STEEL, &brick.nodes);
         assert!(
             within((plate.thickness() - 1e-3).abs(), 5e-5, Discretisation)
                 && of_part(&plate, "`solid.pad`", &brick.nodes, 50.0).is_none()

@@ -10,10 +10,13 @@
 //! bending. Their gradients are taken by the Jacobian J₀ of the middle, ∇P = (|J₀|/|J|) J₀⁻ᵀ ∂P/∂ξ, so that they do no work under constant
 //! stress on any mesh (R. L. Taylor, P. J. Beresford & E. L. Wilson, Int. J. Numer. Meth. Eng. 10 (1976) 1211); they are
 //! eliminated in the element: K = K_uu − K_uα K_αα⁻¹ K_αu.
+//!
+//! The 20-node hexahedron may be integrated at 2 × 2 × 2 points ([`Integration::Reduced`]). There six motions of it have no strain;
+//! a small part θ of the exact stiffness keeps them: K = (1 − θ) K₈ + θ K₂₇, which leaves constant stress as it is.
 
 use super::{ElementMatrix, FiniteElement};
 use crate::mesh::{Cell, CellKind};
-use crate::structure::{Material, Solid};
+use crate::structure::{Integration, Material, Solid};
 use nalgebra::{Matrix3, SMatrix, Vector3};
 use std::sync::OnceLock;
 
@@ -22,6 +25,9 @@ type Strain = SMatrix<f64, 6, 3>;
 
 /// How far a middle may be off, as a part of an edge: rounding of coordinates in files.
 const STRAIGHT: f64 = 1e-6;
+
+/// θ: the part of the exact stiffness in that of reduced integration.
+const STABILISATION: f64 = 0.01;
 
 /// An element on one cell, 3 freedoms a node.
 pub struct SolidElement<'a> {
@@ -42,6 +48,8 @@ struct Tabulated {
 struct Rules {
     /// Of K where the cell has straight edges; the other one serves the rest.
     straight: Vec<Tabulated>,
+    /// Of K of a reduced integration; none where there is not any.
+    reduced: Option<Vec<Tabulated>>,
     /// Of M.
     mass: Vec<Tabulated>,
     /// Gradients in the middle.
@@ -71,7 +79,13 @@ impl Rules {
             let corners = kind.table().corners;
             let middle =
                 std::array::from_fn(|k| corners.iter().map(|c| c[k]).sum::<f64>() / corners.len() as f64);
-            Rules { straight: table(straight), mass: table(mass), middle: kind.shape_gradients(middle) }
+            let reduced = (kind == CellKind::Hexahedron20).then(|| table(3));
+            Rules {
+                straight: table(straight),
+                reduced,
+                mass: table(mass),
+                middle: kind.shape_gradients(middle),
+            }
         };
         &ALL.get_or_init(|| CellKind::all().map(rules).collect())[kind as usize]
     }
@@ -143,10 +157,22 @@ impl<'a> SolidElement<'a> {
         }
     }
 
-    /// The quadrature of K.
-    fn stiffness_rule(&self) -> &'static [Tabulated] {
+    /// The quadratures of K, each with its share.
+    fn stiffness_rules(&self) -> Vec<(f64, &'static [Tabulated])> {
         let rules = Rules::of(self.cell.kind());
-        if self.is_straight() { &rules.straight } else { &rules.mass }
+        let exact: &[Tabulated] = if self.is_straight() { &rules.straight } else { &rules.mass };
+        match &rules.reduced {
+            Some(reduced) if self.solid.integration == Integration::Reduced => {
+                vec![(1.0 - STABILISATION, reduced), (STABILISATION, exact)]
+            }
+            _ => vec![(1.0, exact)],
+        }
+    }
+
+    /// The points of all of them, with their shares.
+    fn stiffness_points(&self) -> impl Iterator<Item = (f64, &'static Tabulated)> {
+        let of_rule = |(share, points): (f64, &'static [Tabulated])| points.iter().map(move |p| (share, p));
+        self.stiffness_rules().into_iter().flat_map(of_rule)
     }
 
     /// Whether the nodes in the middle of edges and faces are the means of their corners.
@@ -182,8 +208,8 @@ impl<'a> SolidElement<'a> {
         let d = self.solid.material.elasticity();
         let middle = self.has_bubbles().then(|| self.middle());
         let mut gradients = Vec::with_capacity(30);
-        for point in self.stiffness_rule() {
-            let volume = self.gradients(point, &mut gradients);
+        for (share, point) in self.stiffness_points() {
+            let volume = share * self.gradients(point, &mut gradients);
             if let Some(middle) = &middle {
                 self.add_bubbles(point, middle, &mut gradients);
             }
@@ -268,8 +294,8 @@ impl FiniteElement for SolidElement<'_> {
             u.extend((0..3).map(|b| Vector3::new(inside[3 * b], inside[3 * b + 1], inside[3 * b + 2])));
         }
         let mut gradients = Vec::with_capacity(30);
-        for point in self.stiffness_rule() {
-            let volume = self.gradients(point, &mut gradients);
+        for (share, point) in self.stiffness_points() {
+            let volume = share * self.gradients(point, &mut gradients);
             if let Some(middle) = &middle {
                 self.add_bubbles(point, middle, &mut gradients);
             }
