@@ -27,8 +27,8 @@ pub fn averaging(
         moment += *w * (Matrix3::identity() * r.norm_squared() - r * r.transpose());
     }
     let sizes = moment.symmetric_eigenvalues();
-    // NaN of no weight is refused, too.
-    if !(sizes.min() > ON_A_LINE * sizes.max()) {
+    // Nodes without weight have no number here.
+    if sizes.min().is_nan() || sizes.min() <= ON_A_LINE * sizes.max() {
         return None;
     }
     let inverse = moment.try_inverse()?;

@@ -61,7 +61,7 @@ fn elastic(model: &Model, count: usize) -> Vec<f64> {
 }
 
 fn solid() -> Solid {
-    Solid { material: steel() }
+    Solid::new(steel())
 }
 
 /// Goal: random constraints, in random order, slaves of slaves of slaves: every one holds for any q, each takes one degree of
@@ -457,7 +457,7 @@ fn plates_on_solids_bend_as_one() {
 /// that of a plate clamped at its edge, the solid being far stiffer.
 #[test]
 fn a_plate_on_edge_is_clamped_by_a_solid() {
-    let stiff = Solid { material: Material { youngs_modulus: 1e5 * steel().youngs_modulus, ..steel() } };
+    let stiff = Solid::new(Material { youngs_modulus: 1e5 * steel().youngs_modulus, ..steel() });
     for turn in [0.0, 0.4] {
         let place = |[x, y, z]: [f64; 3]| {
             let (s, c) = f64::sin_cos(turn);

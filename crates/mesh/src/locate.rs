@@ -326,10 +326,10 @@ mod tests {
                 let x: [f64; 3] = std::array::from_fn(|k| middle[k] + 3.0 * (random(&mut seed) - 0.5));
                 let found = tree.nearest(x);
                 let best = found[0];
-                for face in 0..faces.len() {
+                for (face, own) in faces.iter().enumerate() {
                     for (i, j) in (0..=6).flat_map(|i| (0..=6).map(move |j| (i, j))) {
                         let (a, b) = (f64::from(i) / 6.0, f64::from(j) / 6.0);
-                        let at = if faces[face].corners().len() == 3 {
+                        let at = if own.corners().len() == 3 {
                             [a, (1.0 - a) * b, 0.0]
                         } else {
                             [2.0 * a - 1.0, 2.0 * b - 1.0, 0.0]
