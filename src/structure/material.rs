@@ -182,7 +182,7 @@ fn check_material(material: &Material, report: &mut Report) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::linalg::bounds::within;
+    use crate::bounds::{Origin::*, within};
     use crate::structure::samples::STEEL;
 
     fn lining(axis_3: [f64; 3], axis_1: Option<[f64; 3]>, full: bool) -> Material {
@@ -233,10 +233,7 @@ mod tests {
                     + (1.0 / g12 - 2.0 * nu12 / e1) * a * b
                     + (1.0 / g23 - 2.0 * nu23 / e2) * b * c
                     + (1.0 / 1.9e9 - 2.0 * 0.31 / e1) * a * c;
-                assert!(
-                    within((found / right - 1.0).abs(), 1e-13, RoundOff),
-                    "{full} {n}: {found} {right}"
-                );
+                assert!(within((found / right - 1.0).abs(), 1e-13, RoundOff), "{full} {n}: {found} {right}");
             }
         }
     }

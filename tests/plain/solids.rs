@@ -269,7 +269,10 @@ fn a_cantilever_with_reduced_integration_is_that_of_calculix() {
         let found = lowest_frequencies(&assemble(&model).unwrap().structure, published.len(), 0.0);
         for (published, found) in published.iter().zip(&found) {
             let error = (found / published - 1.0).abs();
-            assert!(error >= nearer && within(error, farther, Theory), "{integration:?}: {found} {published}");
+            assert!(
+                error >= nearer && within(error, farther, Theory),
+                "{integration:?}: {found} {published}"
+            );
         }
     }
 }
