@@ -50,6 +50,9 @@ impl Correction {
     }
 }
 
+/// Why no solution was accepted.
+const NOT_MET: &str = "the equations are met to more than 1e-6 of the forces";
+
 /// Where a load step stands: the fraction of load and of friction.
 type Fraction = f64;
 
@@ -67,19 +70,32 @@ impl<'a> ContactProblem<'a> {
 
     /// Newton from first touch; when that fails, in steps of load and friction.
     pub(super) fn solve(&self, options: &SteadyOptions) -> Result<ContactSolution> {
+        self.solve_accepted(options, Some)
+    }
+
+    /// What `accept` makes of the first solution for which that is something. A body that only closed contacts hold has, with every
+    /// contact open, equations that are singular but for rounding, and a solution far away that means nothing.
+    pub(super) fn solve_accepted<T>(
+        &self,
+        options: &SteadyOptions,
+        mut accept: impl FnMut(ContactSolution) -> Option<T>,
+    ) -> Result<T> {
         let mut last = None;
         for start in self.starts(1.0) {
-            match self.newton(start, 1.0, options) {
-                Ok(stage) => return Ok(stage),
+            match self.newton(start, 1.0, options).map(&mut accept) {
+                Ok(Some(accepted)) => return Ok(accepted),
+                Ok(None) => {}
                 Err(failure) => last = Some(failure),
             }
         }
-        self.stepped(options).map_err(|failure| {
-            let failure = failure.or(last).unwrap_or_else(|| "no contact point".into());
+        let stepped = self.stepped(options).map(|solution| accept(solution).ok_or(None));
+        stepped.flatten().map_err(|failure| {
+            let failure = failure.or(last).unwrap_or_else(|| NOT_MET.into());
             Error::analysis(
                 "steady sliding",
                 format!("no steady state was found, neither at once nor in load steps; {failure}"),
-                "Check that the load presses against a support, or lower the friction: it may jam",
+                "Check that the load presses against a support, or lower the friction: it may jam; that the stiffnesses of contacts, springs \
+                 and supports do not span too many orders of magnitude",
             )
         })
     }

@@ -89,25 +89,23 @@ pub fn solve_steady_with(
     options: &SteadyOptions,
 ) -> Result<SteadySliding> {
     let contact = ContactProblem::new(&system.pairs, &system.load, condensed);
-    let mut stage = contact.solve(options)?;
-    let (displacement, error) = refine(system, k, &contact, &mut stage);
-    let points = states(&system.pairs, &stage.penetration);
-    let steady = SteadySliding {
-        residual: residual(system, k, &displacement, &points).1,
-        displacement,
-        approach: stage.approach,
-        points,
-        iterations: stage.iterations,
-    };
-    if error > ACCEPTED || error.is_nan() {
-        return Err(Error::analysis(
-            "steady sliding",
-            format!("the equations are met to {error:.1e} of the forces only; {ACCEPTED:.0e} is needed"),
-            "Stiffnesses span too many orders of magnitude: check those of the contacts, springs and supports",
-        ));
-    }
-    check_contact(&system.pairs, &steady.approach, &steady.points, options)?;
-    Ok(steady)
+    let mut refused = None;
+    let found = contact.solve_accepted(options, |mut stage| {
+        let (displacement, error) = refine(system, k, &contact, &mut stage);
+        let points = states(&system.pairs, &stage.penetration);
+        let sound = check_contact(&system.pairs, &stage.approach, &points, options);
+        let is_sound = sound.is_ok();
+        refused = sound.err().or(refused.take());
+        // NaN is none.
+        (error <= ACCEPTED && is_sound).then(|| SteadySliding {
+            residual: residual(system, k, &displacement, &points).1,
+            displacement,
+            approach: stage.approach,
+            points,
+            iterations: stage.iterations,
+        })
+    });
+    found.map_err(|error| refused.unwrap_or(error))
 }
 
 /// The contact points alone at steady sliding, all that a linearisation needs where the stiffness is constant: no

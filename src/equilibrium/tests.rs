@@ -199,6 +199,33 @@ fn prestress_is_carried_to_its_fixed_point() {
     assert!(said.contains("as in buckling") && said.contains("Lower the load"), "{said}");
 }
 
+/// Goal: a chain that only contacts on one side hold, touching without force at first, is found where it is pressed, whatever tiny
+/// stiffness rounding or a preload leaves it when all of them are open.
+#[test]
+fn bodies_that_only_contact_holds_are_found_pressed() {
+    for (power, sign) in (-16..-8).flat_map(|power| [(power, 1.0), (power, -1.0)]) {
+        let left = sign * 1000.0 * 10f64.powi(power);
+        let stiffness = |i: usize, j: usize| match i.abs_diff(j) {
+            0 => 500.0 * if i == 1 { 2.0 } else { 1.0 } + left,
+            1 => -500.0,
+            _ => 0.0,
+        };
+        let none = SparseVector::default;
+        let points = (0..3).map(|i| point(0.0, 1.0, vector(&[(i, 1.0)]), none(), none())).collect();
+        let law = SlidingLaw::new(NormalLaw::linear(1000.0), Coulomb { mu0: 0.3 }, 0.0);
+        let system = System {
+            structure: structure(3, |i, j| f64::from(u8::from(i == j)), stiffness),
+            pairs: vec![pair(points, law, Closing::Approach(0.0), 1.0)],
+            load: vec![3.0, 4.0, 5.0],
+            prestress: None,
+            coupling: None,
+        };
+        let steady = solve(&system).unwrap();
+        let sum: f64 = steady.points.iter().map(|point| point.forces.normal).sum();
+        assert!(within((sum / 12.0 - 1.0).abs(), 1e-6, Stated) && steady.residual < 1e-6, "{left:e}: {sum}");
+    }
+}
+
 /// K_c and C_c against differences of r_c in a random direction.
 #[test]
 fn linearised_contact_is_the_derivative_of_the_residual() {
