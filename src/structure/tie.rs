@@ -12,12 +12,12 @@
 //! * the nodes of a solid with ux, uy, uz;
 //! * the face of a shell: the point of the plate nearest to the master, c along the normal m of the plate, |c| ≤ h/2, so that
 //!   u_s = u(p) − c θ_s × m; rotations of the plate stay its own;
-//! * the edge of a shell on a solid: two points at ±h/2 along m, so that u_s is their mean and the rotation across m is
-//!   m × (u₊ − u₋)/h; the one about m stays its own;
+//! * the edge of a shell on a solid: two points at ±h/2 along m, so that u_s is their mean, the rotation across m is
+//!   m × (u₊ − u₋)/h, and the one about m that of the face, the mean of θ̄ at both;
 //! * the edge of a shell on a shell: u_s and all of θ_s = θ̄.
 
 use super::elements::{FacePoint, FlatTriangle, split_face};
-use super::model::{Constraint, Part, PartKind};
+use super::model::{Constraint, Part, PartKind, PlateTheory};
 use crate::mesh::{Cell, FaceTree, LocatedPoint};
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
@@ -26,6 +26,8 @@ use std::collections::BTreeMap;
 const WITHIN: f64 = 0.1;
 /// Gaps below this share of the mean size of the master's faces are none.
 const NO_GAP: f64 = 1e-6;
+/// Barycentric coordinates below this are of points on a side.
+const ON_SIDE: f64 = 1e-6;
 /// Coefficients below this share of the largest of a sum are rounding.
 const ROUNDING: f64 = 1e-13;
 
@@ -181,13 +183,14 @@ impl Slave {
                 form
             })
             .collect();
-        // θ = Θ + m ω, and the component of θ along which m is longest stays free: ω = (θ_k − Θ_k)/m_k.
-        let k = m.iamax();
-        for i in (0..3).filter(|i| *i != k) {
-            let mut form = rotation[i].clone();
-            add(&mut form, m[i] / m[k], &one(self.node, 3 + k));
-            add(&mut form, -m[i] / m[k], &rotation[k]);
-            rows.push((3 + i, form));
+        // With the rotation of the face about m.
+        let mut about = Form::new();
+        for motion in [&up, &down] {
+            (0..3).for_each(|k| add(&mut about, 0.5 * m[k], &motion[3 + k]));
+        }
+        for (k, mut form) in rotation.into_iter().enumerate() {
+            add(&mut form, m[k], &about);
+            rows.push((3 + k, form));
         }
         rows
     }
@@ -280,11 +283,33 @@ impl Master<'_> {
             let points = splitting.iter().map(|corners| self.on_triangle(*corners, foot.position));
             let least = |point: &FacePoint| point.barycentric.iter().fold(f64::INFINITY, |m, b| m.min(*b));
             let Some(at) = points.max_by(|a, b| least(a).total_cmp(&least(b))) else { continue };
+            let mut own = Motion::default();
             for (node, component, by) in self.tie.master.displacement_at(self.tie.nodes, cell, &at) {
-                (0..6).for_each(|k| add(&mut motion[k], share * by[k], &one(node, component)));
+                (0..6).for_each(|k| add(&mut own[k], by[k], &one(node, component)));
             }
+            self.turn_linearly_about_sides(&at, &mut own);
+            (0..6).for_each(|k| add(&mut motion[k], share, &own[k]));
         }
         motion
+    }
+
+    /// On the side of a thin plate the rotation about the side is linear between its ends, as the discrete Kirchhoff triangle has it; the slope
+    /// of the cubic deflection across the side is not.
+    fn turn_linearly_about_sides(&self, at: &FacePoint, motion: &mut Motion) {
+        let thin = self.tie.master.as_shell().is_some_and(|shell| shell.theory == PlateTheory::Kirchhoff);
+        let across = (0..3).find(|k| at.barycentric[*k].abs() < ON_SIDE);
+        let Some(opposite) = across.filter(|_| thin) else { return };
+        let [a, b] = [1, 2].map(|k| at.corners[(opposite + k) % 3]);
+        let side = Vector3::from(self.tie.nodes[b]) - Vector3::from(self.tie.nodes[a]);
+        let Some(side) = side.try_normalize(0.0) else { return };
+        let mut change = Form::new();
+        for k in 0..3 {
+            for (corner, share) in at.corners.iter().zip(at.barycentric) {
+                add(&mut change, side[k] * share, &one(*corner, 3 + k));
+            }
+            add(&mut change, -side[k], &motion[3 + k]);
+        }
+        (0..3).for_each(|k| add(&mut motion[3 + k], side[k], &change));
     }
 
     /// A place near a triangle by its barycentric coordinates.

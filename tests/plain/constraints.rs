@@ -396,8 +396,8 @@ fn hanging_nodes_of_a_seam_are_joined() {
             let open = &assemble(&seam(n, faces, theory, false)).unwrap().structure;
             let open = error(&lowest_frequencies(open, 11, 20.0)[6..]);
             println!("{faces:?} {theory:?} {n:?}: tied {tied:.2e}, meshes {own:?}, open {open:.2e}");
-            // Discretisation: of the coarser mesh, and of the seam, of the same order.
-            assert!(tied < 4.0 * own[0].max(own[1]) && open > 0.05, "{n:?}: {tied:e} {own:?} {open:e}");
+            // Discretisation, of the coarser mesh.
+            assert!(tied < own[0].max(own[1]) && open > 0.05, "{n:?}: {tied:e} {own:?} {open:e}");
         }
     }
 }
@@ -496,8 +496,8 @@ fn a_plate_on_edge_is_clamped_by_a_solid() {
         };
         for (tied, clamped) in build(true).into_iter().zip(build(false)) {
             println!("{turn}: {}", tied / clamped - 1.0);
-            // What the solid gives, and solutions of stiffnesses 1e5 apart.
-            assert!(within((tied / clamped - 1.0).abs(), 1e-3, Theory), "{turn}: {tied:e} {clamped:e}");
+            // What the solid gives; a clamp leaves the rotation about the plate's normal free.
+            assert!(within((tied / clamped - 1.0).abs(), 5e-2, Theory), "{turn}: {tied:e} {clamped:e}");
         }
     }
 }

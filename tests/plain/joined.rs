@@ -3,9 +3,10 @@
 use crate::common::lowest_frequencies;
 use stridor::bounds::{Origin::*, least, within};
 use stridor::case::Case;
-use stridor::job::{Prepared, check_case};
-use stridor::mesh::generate::{structured_annulus, structured_box};
+use stridor::job::{Prepared, Selection, analyse, check_case};
+use stridor::mesh::generate::{Faces, structured_annulus, structured_box, structured_plate};
 use stridor::mesh::{CellKind, Mesh, write};
+use stridor::results::{ComplexResult, SensitivityResult};
 
 /// A bar of 100 × 20 × 10 mm along x of two boxes that share no nodes, `gap` apart; regions `left`, `left x_max` and so on.
 fn bar(gap: f64) -> Mesh {
@@ -171,6 +172,65 @@ fn springs_per_area_act_on_displacements_and_rotations_of_faces() {
     assert!(text.contains("`spring.a.rotational`"), "{text}");
     let text = fault("on = \"right x_min\"\nto = \"right x_max\"\nper = \"area\"\n");
     assert!(text.contains("`spring.a.on`") && text.contains("no node within"), "{text}");
+}
+
+/// Derivatives of complex eigenvalues are those of whole analyses on both sides, also by scalars that move what the constraints are made of: the thickness of
+/// a plate tied on edge, the stiffness of a layer, the mass on an averaged point and its place.
+#[test]
+fn sensitivities_go_through_constraints() {
+    let mut mesh = structured_box(CellKind::Hexahedron8, [0.05, 0.02, 0.01], [3, 2, 1]).unwrap();
+    mesh.regions[0].name = "block".into();
+    let mut plate = structured_plate(0.04, 0.02, 3, 3, Faces::Triangles).unwrap();
+    plate.nodes.iter_mut().for_each(|x| *x = [x[0] + 0.07, x[1] + 0.01, 0.005]);
+    mesh.append(plate);
+    let dir = tempfile::tempdir().unwrap();
+    write(&dir.path().join("a.msh"), &mesh, 1.0).unwrap();
+    let text = "[mesh]\nfile = \"a.msh\"\nunit = \"m\"\n[material.steel]\nyoungs_modulus = 2e11\npoissons_ratio = 0.3\ndensity = 8000\n\
+                [solid.block]\nmaterial = \"steel\"\n[shell.plate]\nmaterial = \"steel\"\nthickness = 0.003\n\
+                [tie.a]\non = \"plate_edge_x_min\"\nto = \"x_max\"\n[point]\np = [0.025, 0.01, 0.02]\n\
+                [averaging.m]\npoint = \"p\"\nof = \"z_max\"\n[mass.m]\non = \"p\"\nmass = 0.05\ninertia = [1e-6, 2e-6, 1e-6]\n\
+                [spring.s]\non = \"x_min\"\nper = \"area\"\ndirection = [1, 1, 0]\nstiffness = 1e12\n\
+                [spring.t]\non = \"x_min\"\nper = \"area\"\ndirection = [1, -1, 0]\nstiffness = 1e12\n\
+                [contact.floor]\nbody = \"z_min\"\ncounter = \"ground\"\ninto = [0, 0, -1]\napproach = 1e-6\nsliding_velocity = 1\n\
+                normal = { per = \"area\", stiffness = 1e12 }\nfriction = { law = \"coulomb\", mu0 = 0.4 }\n\
+                [damping]\nmodal_ratio = 0.005\n[cea]\nband = [10, 9e3]\n[sensitivity]\nmodes = [1000, 4000]\nparameters = [\"shell.plate.thickness\", \
+                \"spring.s.stiffness\", \"mass.m.mass\", \"point.p*\"]\n";
+    let case = Case::parse("a.toml", text, dir.path().into()).unwrap();
+    let of = |case: &Case, selection: Selection| {
+        analyse(&Prepared::new(case).unwrap(), selection, &mut |_| Ok(()), &()).unwrap()
+    };
+    let mut results = of(&case, Selection::Listed);
+    let found = results.take::<SensitivityResult>().unwrap();
+    assert!(!found.modes.is_empty());
+    let paths: Vec<&str> = found.modes[0].parameters.iter().map(|rate| rate.path.as_str()).collect();
+    assert!(paths.len() >= 5, "{paths:?}");
+    for path in paths {
+        let value = found.modes[0].parameters.iter().find(|rate| rate.path == path).unwrap().value;
+        let step = 1e-4 * value;
+        let [up, down] = [step, -step].map(|step| {
+            let case = case.with_parameter(path, value + step).unwrap();
+            of(&case, Selection::Only("cea")).take::<ComplexResult>().unwrap().modes.modes
+        });
+        for mode in &found.modes {
+            let rate = mode.parameters.iter().find(|rate| rate.path == path).unwrap();
+            let [a, b] = [&up, &down].map(|all| {
+                all.iter()
+                    .map(|m| m.eigenvalue)
+                    .min_by(|a, b| (a - mode.eigenvalue).norm().total_cmp(&(b - mode.eigenvalue).norm()))
+                    .unwrap()
+            });
+            let expected = (a - b) / (2.0 * step);
+            let size = mode.eigenvalue.norm() / value;
+            println!("{path} {:.0}: {:.3e}", mode.eigenvalue.im, (rate.rate - expected).norm() / size);
+            // The step's square and the error of the eigenvalues over the step, by the size of λ/p.
+            let bound = 1e-5 * size + 1e-3 * expected.norm();
+            assert!(
+                within((rate.rate - expected).norm(), bound, Reference),
+                "{path}: {} {expected}",
+                rate.rate
+            );
+        }
+    }
 }
 
 /// A ring in any plane, held about its axis in each set of directions: as many motions stay free as geometry says.
