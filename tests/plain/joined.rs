@@ -191,19 +191,23 @@ fn sensitivities_go_through_constraints() {
                 [averaging.m]\npoint = \"p\"\nof = \"z_max\"\n[mass.m]\non = \"p\"\nmass = 0.05\ninertia = [1e-6, 2e-6, 1e-6]\n\
                 [spring.s]\non = \"x_min\"\nper = \"area\"\ndirection = [1, 1, 0]\nstiffness = 1e12\n\
                 [spring.t]\non = \"x_min\"\nper = \"area\"\ndirection = [1, -1, 0]\nstiffness = 1e12\n\
+                [spring.u]\non = \"z_max\"\nper = \"area\"\ndirection = [0, 0, 1]\nstiffness = 1e12\n\
                 [contact.floor]\nbody = \"z_min\"\ncounter = \"ground\"\ninto = [0, 0, -1]\napproach = 1e-6\nsliding_velocity = 1\n\
                 normal = { per = \"area\", stiffness = 1e12 }\nfriction = { law = \"coulomb\", mu0 = 0.4 }\n\
-                [damping]\nmodal_ratio = 0.005\n[cea]\nband = [10, 9e3]\n[sensitivity]\nmodes = [1000, 4000]\nparameters = [\"shell.plate.thickness\", \
-                \"spring.s.stiffness\", \"mass.m.mass\", \"point.p*\"]\n";
-    let case = Case::parse("a.toml", text, dir.path().into()).unwrap();
+                [damping]\nmodal_ratio = 0.005\n[cea]\nband = [10, 9e3]\n[sensitivity]\nmodes = MODES\nparameters = [\"shell.plate.thickness\", \
+                \"spring.s.stiffness\", \"mass.m.mass\", \"point.p.2\"]\n";
+    let case = Case::parse("a.toml", &text.replace("MODES", "[]"), dir.path().into()).unwrap();
     let of = |case: &Case, selection: Selection| {
         analyse(&Prepared::new(case).unwrap(), selection, &mut |_| Ok(()), &()).unwrap()
     };
-    let mut results = of(&case, Selection::Listed);
-    let found = results.take::<SensitivityResult>().unwrap();
+    let plain = of(&case, Selection::Only("cea")).take::<ComplexResult>().unwrap().modes.modes;
+    let mut hz: Vec<f64> = plain.iter().map(|mode| mode.eigenvalue.im / std::f64::consts::TAU).collect();
+    hz.dedup_by(|a, b| (*a / *b - 1.0).abs() < 0.01);
+    let case = Case::parse("a.toml", &text.replace("MODES", &format!("{hz:?}")), dir.path().into()).unwrap();
+    let found = of(&case, Selection::Listed).take::<SensitivityResult>().unwrap();
     assert!(!found.modes.is_empty());
     let paths: Vec<&str> = found.modes[0].parameters.iter().map(|rate| rate.path.as_str()).collect();
-    assert!(paths.len() >= 5, "{paths:?}");
+    assert!(paths.len() >= 4, "{paths:?}");
     for path in paths {
         let value = found.modes[0].parameters.iter().find(|rate| rate.path == path).unwrap().value;
         let step = 1e-4 * value;
