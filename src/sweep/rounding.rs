@@ -37,11 +37,15 @@ pub(super) fn rounding(all: &[c64], shapes: &Mat<c64>, k: usize) -> f64 {
     size * (ROUNDING + others.map(by).fold(0.0, f64::max))
 }
 
-/// Whether λ of eigenvalue `k` and its neighbours differ by more than rounding, so that two modes that will merge have not yet done so.
+/// A gap is sure where half of it is this many times what rounding leaves.
+const SURE: f64 = 10.0;
+
+/// Whether λ of eigenvalue `k` and its neighbours surely differ by more than rounding, so that two modes that will merge have not yet done so.
 pub(super) fn apart(all: &[c64], k: usize, rounding: f64) -> bool {
     let others = all.iter().enumerate().filter(|(j, _)| *j != k);
     let gap = others.map(|(_, other)| (other - all[k]).norm()).fold(f64::INFINITY, f64::min);
-    rounding < all[k].norm() && rounding <= (0.5 * gap).max(2.0 * ROUNDING * all[k].norm())
+    let size = all[k].norm();
+    rounding < size && (SURE * rounding <= 0.5 * gap || rounding <= 2.0 * ROUNDING * size)
 }
 
 /// Whether the rounding of σ of an eigenvalue shows that another mode is nearly one with it, in its shape as in λ.
