@@ -83,6 +83,8 @@ mod tests {
     /// problem, for friction from none to its double and half to three times the stiffness of contact, on few vectors.
     #[test]
     fn many_contact_points_are_served_by_few_vectors() {
+        // What diverges is given whatever the band, and may be on either side of its bottom.
+        let oscillates = |z: &c64| z.im > 0.1 * z.norm();
         for (seed, power) in [(2, 4), (3, 5)] {
             let system = damped(random_system(200, 40, 20.0, 900 + seed), seed);
             let mut reference = steady(&system);
@@ -117,14 +119,15 @@ mod tests {
                 let state = at(friction, stiffness);
                 // Those at the top of the band may be on either side of it.
                 let exact: Vec<c64> = dense_eigenvalues(&system, &state, [band[0], 1.05 * band[1]]);
-                let inside = exact.iter().filter(|z| z.im < 0.98 * TAU * band[1]);
+                let inside = exact.iter().filter(|z| z.im < 0.98 * TAU * band[1] && oscillates(z));
                 let (found, check) =
                     (family.modes(&member(&state)).unwrap(), family.check(&member(&state)).unwrap());
                 for z in inside {
                     let error = (z - nearest(*z, &found.eigenvalues)).norm() / z.norm();
                     assert!(within(error, 1e-4, Discretisation), "seed {seed}: {z}");
                 }
-                for (z, estimate) in found.eigenvalues.iter().zip(&check.eigenvalue_errors) {
+                let all = found.eigenvalues.iter().zip(&check.eigenvalue_errors);
+                for (z, estimate) in all.filter(|(z, _)| oscillates(z)) {
                     let error = (z - nearest(*z, &exact)).norm() / z.norm();
                     assert!(within(error, 1e-4, Discretisation), "seed {seed}: {z}");
                     assert!(

@@ -148,8 +148,7 @@ mod tests {
             system.structure.damping.hysteretic = None;
             let basis = crate::linalg::sparse::times(&system.structure.mass, modes.shapes.as_ref());
             let coefficients = modes.eigenvalues.iter().map(|w| 2.0 * ratio * w.sqrt()).collect();
-            system.structure.damping.modal =
-                Some(crate::system::ModalDamping { basis: basis.into(), coefficients });
+            system.structure.damping.modal = Some(crate::system::ModalDamping { basis, coefficients });
             let steady = solve_steady(&system, &SteadyOptions::default(), &()).unwrap();
             let harmonic = Harmonic::new(&system, &steady).unwrap();
             let (a, b) = (3, 17);
