@@ -81,7 +81,7 @@ impl OnFamily<'_> {
 }
 
 /// Vectors of a reduced model up to which a search takes all the solutions that it may: of more, the fewer the more one costs.
-const CHEAP: f64 = 150.0;
+const CHEAP: f64 = 100.0;
 
 impl SweepProblem for OnFamily<'_> {
     fn solutions_between(&self, points: usize) -> usize {

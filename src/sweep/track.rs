@@ -34,6 +34,15 @@ pub struct Sweep {
     pub doubtful_steps: usize,
 }
 
+impl Sweep {
+    /// How many branches begin or end between two values: modes that enter or leave the band, or that are not followed. Between those
+    /// values nothing is known of them.
+    pub fn broken(&self) -> usize {
+        let whole = |branch: &&Branch| branch.first == 0 && branch.eigenvalues.len() == self.values.len();
+        self.branches.len() - self.branches.iter().filter(whole).count()
+    }
+}
+
 /// Follows every mode of `problem` along `axis`; critical values are located to `tolerance`, relative to the value.
 ///
 /// The values of the axis are solved at once, then linked in their order by their shapes; a step is halved where another

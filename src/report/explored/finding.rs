@@ -17,6 +17,15 @@ pub(super) fn sweep(result: &SweepResult) -> Finding {
     let all = result.sweep.branches.len();
     let ranges = unstable_ranges(result);
     let (class, where_) = match &ranges[..] {
+        [] if result.sweep.broken() > 0 => {
+            let (values, broken) = (result.sweep.values.len(), result.sweep.broken());
+            let words = format!(
+                "none of {all} modes grows at the {values} values of {} from {low} to {high} that were examined; between them it is open, as \
+                 {broken} of the modes begin or end there: more points follow them, or a wider `cea.band`",
+                result.label
+            );
+            (FindingClass::Attention, words)
+        }
         [] => {
             let words = format!("none of {all} modes grows for {} from {low} to {high}", result.label);
             (FindingClass::Good, words)
@@ -214,6 +223,24 @@ mod tests {
         result.sweep.critical.reverse();
         result.sweep.critical.iter_mut().for_each(|c| c.rises = !c.rises);
         assert_eq!(unstable_ranges(&result), [[0.2, 0.3], [1.25, 3.5]]);
+        // None grows: known of modes that are followed through all values only.
+        for (first, count, class) in [
+            (0, 5, FindingClass::Good),
+            (1, 4, FindingClass::Attention),
+            (0, 4, FindingClass::Attention),
+            (4, 1, FindingClass::Attention),
+        ] {
+            let mut calm = result.clone();
+            calm.sweep.critical.clear();
+            calm.sweep.branches = vec![Branch {
+                first,
+                eigenvalues: vec![c64::new(-1.0, 1000.0); count],
+                rounding: vec![0.0; count],
+                ..result.sweep.branches[0].clone()
+            }];
+            let found = sweep(&calm);
+            assert!(found.class == class, "{first} {count}: {}", found.words);
+        }
         result.sweep.branches.truncate(0);
         assert_eq!(sweep(&result).class, FindingClass::Good);
     }

@@ -120,6 +120,9 @@ pub(in crate::report) fn critical_table(result: &SweepResult) -> ReportTable {
             true => {
                 "No mode that is followed becomes unstable or stable in this range; those that grow begin, end or stay unstable."
             }
+            false if result.sweep.broken() > 0 => {
+                "No mode that is followed becomes unstable or stable in this range."
+            }
             false => "No mode becomes unstable or stable in this range.",
         };
         table.notes.push(words.into());
@@ -133,6 +136,14 @@ pub(in crate::report) fn critical_table(result: &SweepResult) -> ReportTable {
                 "The search came to its limit of solutions: {wide} of {count} critical values are known less exactly than aimed at. More points of the sweep, or a narrower range, give them exactly."
             ));
         }
+    }
+    let broken = result.sweep.broken();
+    if broken > 0 {
+        table.notes.push(format!(
+            "{broken} of {} modes begin or end between two values, where they enter or leave the band or change too much: critical values \
+             there may be none. More points, or a wider `cea.band`, follow them.",
+            result.sweep.branches.len()
+        ));
     }
     let doubtful = result.sweep.doubtful_steps;
     if doubtful > 0 {
