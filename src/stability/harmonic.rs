@@ -27,8 +27,10 @@ pub struct Harmonic<'a> {
 /// it, which may be singular, or nearly so, where the sum is not. With the response at the frequency itself, refinement takes back what
 /// the move leaves, of which each step keeps this over ζ.
 const ASIDE: [f64; 4] = [0.0, 1e-10, -1e-8, 1e-6];
-/// Refinement ends at a step of this part of the response.
+/// Refinement ends at a step of this part of the response, or where steps no longer shrink: then rounding is left, as of fine meshes.
 const REFINED: f64 = 1e-9;
+/// With a larger last step than the first the factors of another frequency are tried; with a larger one than the second there is no answer.
+const ACCEPTED: [f64; 2] = [1e-6, 1e-4];
 /// Steps of the refinement at most.
 const STEPS: usize = 8;
 
@@ -47,7 +49,7 @@ impl<'a> Harmonic<'a> {
     /// h of each direction of `seen` for a force along `force` at ω \[rad/s\], by one factorisation of Q(iω).
     ///
     /// # Errors
-    /// A frequency at which nothing damps a resonance.
+    /// A frequency at which nothing damps a resonance, or little beside what rounding leaves.
     pub fn at(&self, omega: f64, force: &SparseVector, seen: &[SparseVector]) -> Result<Vec<c64>> {
         let moved = self.moved(omega, std::slice::from_ref(force))?;
         let along = |d: &SparseVector| d.iter().map(|(i, v)| moved[(i, 0)] * v).sum();
@@ -57,7 +59,7 @@ impl<'a> Harmonic<'a> {
     /// Q(iω)⁻¹ f for each f of `forces`, one a column.
     ///
     /// # Errors
-    /// A frequency at which nothing damps a resonance.
+    /// A frequency at which nothing damps a resonance, or little beside what rounding leaves.
     pub fn moved(&self, omega: f64, forces: &[SparseVector]) -> Result<Mat<c64>> {
         let mut columns = Mat::<c64>::zeros(self.operator.n(), forces.len());
         for (k, force) in forces.iter().enumerate() {
@@ -68,35 +70,50 @@ impl<'a> Harmonic<'a> {
             let shifted = at(omega).map_err(|e| if is_singular(&e) { unbounded(omega) } else { e })?;
             return Ok(shifted.invert(columns));
         }
-        let mut last = None;
+        let (mut best, mut singular): (Option<(Mat<c64>, f64)>, bool) = (None, false);
         for aside in ASIDE {
             match at(omega * (1.0 + aside)) {
-                Ok(shifted) => match self.refined(omega, &shifted, &columns) {
-                    Some(moved) => return Ok(moved),
-                    None => continue,
-                },
-                Err(error) if is_singular(&error) => last = Some(error),
+                Ok(shifted) => {
+                    let (moved, step) = self.refined(omega, &shifted, &columns);
+                    if best.as_ref().is_none_or(|(_, least)| step < *least) {
+                        best = Some((moved, step));
+                    }
+                    if step <= ACCEPTED[0] {
+                        break;
+                    }
+                }
+                Err(error) if is_singular(&error) => singular = true,
                 Err(error) => return Err(error),
             }
         }
-        Err(last.map_or_else(|| not_solved(omega), |_| unbounded(omega)))
+        let unsolved = || if singular { unbounded(omega) } else { not_solved(omega) };
+        best.filter(|(_, step)| *step <= ACCEPTED[1]).map(|(moved, _)| moved).ok_or_else(unsolved)
     }
 
-    /// Q(iω)⁻¹ F by the factors at another frequency; none where the steps do not become small.
-    fn refined(&self, omega: f64, shifted: &Shifted<'_>, columns: &Mat<c64>) -> Option<Mat<c64>> {
+    /// Q(iω)⁻¹ F by the factors at another frequency, and its last step as a part of it.
+    fn refined(&self, omega: f64, shifted: &Shifted<'_>, columns: &Mat<c64>) -> (Mat<c64>, f64) {
         let (n, count) = (columns.nrows(), columns.ncols());
         let lambda = vec![c64::new(0.0, omega); count];
         let mut moved = shifted.invert(columns.clone());
+        let mut last = f64::INFINITY;
         for _ in 0..STEPS {
             let x = Block::from_fn(n, count, |i, j| moved[(i, j)]);
             let value = self.operator.value(Side::Right, &lambda, &x);
             let step = shifted.invert(Mat::from_fn(n, count, |i, j| columns[(i, j)] - value.get(i, j)));
+            let part = |j: usize| step.col(j).norm_l2() / moved.col(j).norm_l2().max(f64::MIN_POSITIVE);
+            // NaN is no step.
+            let size =
+                (0..count).map(part).fold(0.0, |most: f64, part| if part <= most { most } else { part });
+            if size > 0.5 * last || size.is_nan() {
+                break;
+            }
             moved += &step;
-            if (0..count).all(|j| step.col(j).norm_l2() <= REFINED * moved.col(j).norm_l2()) {
-                return Some(moved);
+            last = size;
+            if last <= REFINED {
+                break;
             }
         }
-        None
+        (moved, last)
     }
 }
 
@@ -114,7 +131,7 @@ fn unbounded(omega: f64) -> Error {
 
 /// The error of a response whose equations are too near to singular.
 fn not_solved(omega: f64) -> Error {
-    let found = "its equations are solved to less than nine digits";
+    let found = "its equations are solved to less than four digits";
     Error::analysis(format!("frequency response at {:.6} Hz", omega / TAU), found, DAMPERS)
 }
 
