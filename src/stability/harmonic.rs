@@ -30,7 +30,7 @@ const ASIDE: [f64; 4] = [0.0, 1e-10, -1e-8, 1e-6];
 /// Refinement ends at a step of this part of the response, or where steps no longer shrink: then rounding is left, as of fine meshes.
 const REFINED: f64 = 1e-9;
 /// With a larger last step than the first the factors of another frequency are tried; with a larger one than the second there is no answer.
-const ACCEPTED: [f64; 2] = [1e-6, 1e-4];
+const ACCEPTED: [f64; 2] = [1e-7, 1e-4];
 /// Steps of the refinement at most.
 const STEPS: usize = 8;
 
@@ -180,10 +180,8 @@ mod tests {
                     };
                     let exact: c64 = (0..40).map(term).sum();
                     let size = (0..40).map(|k| term(k).norm()).sum::<f64>();
-                    // What a rounding of ω changes in ω² − ω_k², over 2ζω².
-                    let bound = 1e-8_f64.max(1e-13 / ratio);
                     assert!(
-                        within((found - exact).norm() / size, bound, RoundOff),
+                        within((found - exact).norm() / size, 10.0 * ACCEPTED[0], Tolerance),
                         "{ratio} {k} {beside}: {found} {exact}"
                     );
                 }
