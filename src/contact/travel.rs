@@ -1,6 +1,6 @@
 //! Contacts whose counter-body travels under them.
 
-use crate::mesh::Cell;
+use crate::mesh::{Cell, cell_nodes};
 use crate::system::ContactPoint;
 use nalgebra::Vector3;
 
@@ -38,10 +38,7 @@ impl Stations {
 pub fn travelled(nodes: &[[f64; 3]], faces: &[Cell], direction: [f64; 3], travel: f64) -> Vec<[f64; 3]> {
     let way = Vector3::from(direction).normalize() * travel;
     let mut nodes = nodes.to_vec();
-    let mut own: Vec<usize> = faces.iter().flat_map(Cell::nodes).copied().collect();
-    own.sort_unstable();
-    own.dedup();
-    own.into_iter().for_each(|node| nodes[node] = (Vector3::from(nodes[node]) + way).into());
+    cell_nodes(faces).into_iter().for_each(|node| nodes[node] = (Vector3::from(nodes[node]) + way).into());
     nodes
 }
 

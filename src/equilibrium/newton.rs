@@ -73,7 +73,7 @@ impl<'a> ContactProblem<'a> {
         self.solve_accepted(options, Some)
     }
 
-    /// What `accept` makes of the first solution for which that is something. A body that only closed contacts hold has, with every
+    /// The first solution that is accepted, as `accept` gives it. A body that only closed contacts hold has, with every
     /// contact open, equations that are singular but for rounding, and a solution far away that means nothing.
     pub(super) fn solve_accepted<T>(
         &self,

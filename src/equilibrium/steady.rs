@@ -93,11 +93,12 @@ pub fn solve_steady_with(
     let found = contact.solve_accepted(options, |mut stage| {
         let (displacement, error) = refine(system, k, &contact, &mut stage);
         let points = states(&system.pairs, &stage.penetration);
-        let sound = check_contact(&system.pairs, &stage.approach, &points, options);
-        let is_sound = sound.is_ok();
-        refused = sound.err().or(refused.take());
+        if let Err(fault) = check_contact(&system.pairs, &stage.approach, &points, options) {
+            refused = Some(fault);
+            return None;
+        }
         // NaN is none.
-        (error <= ACCEPTED && is_sound).then(|| SteadySliding {
+        (error <= ACCEPTED).then(|| SteadySliding {
             residual: residual(system, k, &displacement, &points).1,
             displacement,
             approach: stage.approach,

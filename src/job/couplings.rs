@@ -5,7 +5,7 @@ use super::regions::Regions;
 use crate::case::{Averaging, Case, SpringPer, SpringSet, Tie};
 use crate::contact::tributary;
 use crate::error::{Error, Fault, Faults, Result};
-use crate::mesh::{Cell, made_of};
+use crate::mesh::{Cell, cell_nodes, made_of};
 use crate::numbers::{components, given};
 use crate::structure::{self, Constraint, Coupling, Model, Part, Spring, Tied, averaging, tied};
 use std::collections::BTreeMap;
@@ -39,12 +39,7 @@ fn averaging_link(name: &str, link: &Averaging, regions: &Regions, model: &Model
         dimensions.push(region.dimension);
     }
     let (point, cells) = faults.into_result((point.unwrap_or_default(), cells))?;
-    let nodes = {
-        let mut nodes: Vec<usize> = cells.iter().flat_map(Cell::nodes).copied().collect();
-        nodes.sort_unstable();
-        nodes.dedup();
-        nodes
-    };
+    let nodes = cell_nodes(&cells);
     if nodes.contains(&point) {
         let found = format!("{}, the point itself, among them", regions.name_of_node(point));
         let fault = Fault::new(place, found, "regions without the point");

@@ -96,18 +96,17 @@ fn about_axis(
 /// Refuses what acts on rotations of nodes that have none: solids take displacements alone.
 pub fn check_turning(case: &Case, regions: &Regions, model: &Model, faults: &mut Faults) {
     let mut turns = vec![true; model.nodes.len()];
-    let nodes = |part: &Part| part.nodes();
     let (solid, other): (Vec<&Part>, Vec<&Part>) =
         model.parts.iter().partition(|part| matches!(part.kind, PartKind::Solid(_)));
-    solid.into_iter().flat_map(nodes).for_each(|node| turns[node] = false);
-    other.into_iter().flat_map(nodes).for_each(|node| turns[node] = true);
+    solid.into_iter().flat_map(Part::nodes).for_each(|node| turns[node] = false);
+    other.into_iter().flat_map(Part::nodes).for_each(|node| turns[node] = true);
     for link in &model.links {
         std::iter::once(&link.master).chain(&link.slaves).for_each(|node| turns[*node] = true);
     }
     let slaves = model.couplings.iter().flat_map(|coupling| &coupling.constraints).map(|c| c.slave);
     slaves.filter(|(_, component)| *component > 2).for_each(|(node, _)| turns[node] = true);
     let mut check = |place: String, what: &str, on: &[String]| {
-        // Regions that are missing are told elsewhere.
+        // Regions that are missing are faults already.
         let nodes = regions.nodes_of(on, "", &mut Faults::new());
         let still: Vec<usize> = nodes.into_iter().filter(|node| !turns[*node]).collect();
         if !still.is_empty() {

@@ -48,7 +48,7 @@ pub(super) struct CompletedAnalysis<'a> {
     pub(super) band_hz: [f64; 2],
 }
 
-/// `complex_modes` of a projection, and what `then` makes of them and the analysis.
+/// `complex_modes` of a projection, and what `then` gives for them and the analysis.
 pub(super) fn analyse<'a, T>(
     system: &System,
     steady: &SteadySliding,
@@ -71,7 +71,7 @@ pub(super) fn analyse<'a, T>(
     Ok((modes, rest))
 }
 
-/// The modes of `operator`, and what `then` makes of them and the analysis.
+/// The modes of `operator`, and what `then` gives for them and the analysis.
 fn solved<T>(
     operator: &Operator<'_>,
     known: Structural<'_>,

@@ -78,7 +78,7 @@ impl<'a> Basis<'a> {
     }
 
     /// How many vectors can be added: beyond that they are dependent.
-    fn room(&self) -> usize {
+    fn free(&self) -> usize {
         self.operator.n().saturating_sub(self.len())
     }
 
@@ -133,7 +133,7 @@ impl<'a> Basis<'a> {
         if z.ncols() > WIDE && limit == usize::MAX {
             self.append_principal(z, tolerance);
         } else {
-            let new = self.largest(z.clone(), tolerance, limit.min(self.room()));
+            let new = self.largest(z.clone(), tolerance, limit.min(self.free()));
             self.append(new.as_ref());
         }
         self.len() - old
@@ -203,7 +203,7 @@ impl<'a> Basis<'a> {
         let Ok((sizes, directions)) = symmetric_eigen(energy.as_ref()) else { return Mat::zeros(count, 0) };
         let floor = (tolerance * tolerance).max(DIGITS_LEFT * largest);
         let large = (0..sizes.len()).rev().filter(|j| sizes[*j] > floor);
-        let kept: Vec<usize> = large.take(self.room()).collect();
+        let kept: Vec<usize> = large.take(self.free()).collect();
         let directions = Mat::from_fn(count, kept.len(), |i, k| directions[(i, kept[k])]);
         let mix =
             Mat::from_fn(count, kept.len(), |i, k| directions[(i, k)] * (self.tau / sizes[kept[k]]).sqrt());

@@ -54,6 +54,7 @@ pub struct Family<'f> {
     basis: Basis<'f>,
     /// Closed contact springs of the reference stiffness: direction and N/m.
     springs: Vec<(usize, f64)>,
+    projection: Projection,
     /// On the whole basis.
     reduced: FamilyMatrices,
     /// Modes of the members on which it was trained.
@@ -176,9 +177,10 @@ impl<'f> Family<'f> {
             basis.enrich(&first, 1e-9, STATIC);
             basis.enrich(&second, 1e-6, STATIC);
         }
-        let reduced = FamilyMatrices::new(&project(frame, &basis), &springs, frame.floor())?;
+        let projection = project(frame, &basis);
+        let reduced = FamilyMatrices::new(&projection, &springs, frame.floor())?;
         let (snapshots, compact) = (Snapshots::default(), None);
-        Ok(Family { frame, basis, springs, reduced, snapshots, compact })
+        Ok(Family { frame, basis, springs, projection, reduced, snapshots, compact })
     }
 
     /// The size of the reduced model.
@@ -256,8 +258,8 @@ impl<'f> Family<'f> {
             if self.basis.enrich(&corrections, FIRST_TOLERANCE * 0.01f64.powi(k), usize::MAX) == 0 {
                 break;
             }
-            self.reduced =
-                FamilyMatrices::new(&project(self.frame, &self.basis), &self.springs, self.frame.floor())?;
+            self.projection = project(self.frame, &self.basis);
+            self.reduced = FamilyMatrices::new(&self.projection, &self.springs, self.frame.floor())?;
             (check, wanted) = measure(self)?;
         }
         if self.basis.len() > LARGE {
@@ -272,7 +274,7 @@ impl<'f> Family<'f> {
         let wanted = |z| near_band(z, band);
         let modes = self.reduced.solve(&frame.terms(state), &state.damping_weights, wanted)?;
         self.snapshots.add(self.reduced.rotation.as_ref(), &modes);
-        let fewer = self.snapshots.compact(&project(frame, &self.basis), band[1].powi(2));
+        let fewer = self.snapshots.compact(&self.projection, band[1].powi(2));
         let matrices = |(projection, basis): (Projection, Mat<f64>)| {
             let mut matrices = FamilyMatrices::new(&projection, &self.springs, frame.floor())?;
             matrices.rotation = product(basis.as_ref(), matrices.rotation.as_ref());

@@ -48,7 +48,7 @@ pub fn check_constraints(model: &Model, words: &ConstraintWords, faults: &mut Fa
     let before = faults.0.len();
     let masters = check_links(model, words, faults);
     let producers = check_slaves(model, &masters, words, faults);
-    // Supports of slaves are told beside slaves that are slaves twice.
+    // Supports of slaves are faults beside slaves that are slaves twice.
     check_supports(model, &masters, &producers, words, faults);
     if faults.0.len() == before {
         check_circles(model, &masters, words, faults);

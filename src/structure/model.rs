@@ -4,7 +4,7 @@ use super::elements::waves::shear_coefficient;
 use super::elements::{FlatTriangle, split_face};
 use super::material::Material;
 use super::section::Section;
-use crate::mesh::{Cell, outward};
+use crate::mesh::{Cell, cell_nodes, outward};
 use crate::schema::{choices, dotted};
 
 /// A structure: nodes and all that hangs on them. Degrees of freedom are (ux, uy, uz, rx, ry, rz) at every node.
@@ -175,10 +175,7 @@ impl Part {
 
     /// Its nodes, ascending, each once.
     pub fn nodes(&self) -> Vec<usize> {
-        let mut nodes: Vec<usize> = self.cells.iter().flat_map(Cell::nodes).copied().collect();
-        nodes.sort_unstable();
-        nodes.dedup();
-        nodes
+        cell_nodes(&self.cells)
     }
 
     /// A \[m²\] of all faces of a shell.

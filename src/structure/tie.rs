@@ -18,7 +18,7 @@
 
 use super::elements::{FacePoint, FlatTriangle, split_face};
 use super::model::{Constraint, Part, PartKind, PlateTheory};
-use crate::mesh::{Cell, FaceTree, LocatedPoint};
+use crate::mesh::{Cell, FaceTree, LocatedPoint, cell_nodes};
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 
@@ -48,7 +48,7 @@ pub struct Tie<'a> {
     pub within: Option<f64>,
 }
 
-/// What a tie makes of its nodes.
+/// The constraints of a tie, and the nodes that it joins and leaves.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tied {
     /// One constraint for each slave degree of freedom.
@@ -77,12 +77,9 @@ pub fn tied(tie: &Tie<'_>) -> Tied {
     let count = tie.faces.len().max(1) as f64;
     let size = (0..tie.faces.len()).map(|face| tree.size(face)).sum::<f64>() / count;
     let surface = Master { tie, tree };
-    let mut own: Vec<usize> = tie.cells.iter().flat_map(Cell::nodes).copied().collect();
-    own.sort_unstable();
-    own.dedup();
+    let own = cell_nodes(tie.cells);
     let normals = normals(tie.slave, tie.nodes, &own);
-    let mut masters: Vec<usize> = tie.faces.iter().flat_map(Cell::nodes).copied().collect();
-    masters.sort_unstable();
+    let masters = cell_nodes(tie.faces);
     let mut found = Tied {
         constraints: Vec::new(),
         following: Vec::new(),

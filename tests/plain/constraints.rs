@@ -133,9 +133,9 @@ fn sums_of_slaves_hold_in_any_order() {
     }
 }
 
-/// Goal: circles, slaves of two and held slaves are each told once.
+/// Goal: circles, slaves of two and held slaves are one fault each.
 #[test]
-fn constraints_that_contradict_are_told_once() {
+fn constraints_that_contradict_are_one_fault_each() {
     let mesh = structured_plate(0.3, 0.2, 3, 2, Faces::Triangles).unwrap();
     let mut bare = Model::default();
     add(&mut bare, "plate", &mesh, "plate", Shell::new(steel(), 0.01), |x| x);

@@ -139,6 +139,14 @@ impl Cell {
     }
 }
 
+/// The nodes of some cells, ascending, each once.
+pub fn cell_nodes<'a>(cells: impl IntoIterator<Item = &'a Cell>) -> Vec<usize> {
+    let mut nodes: Vec<usize> = cells.into_iter().flat_map(Cell::nodes).copied().collect();
+    nodes.sort_unstable();
+    nodes.dedup();
+    nodes
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

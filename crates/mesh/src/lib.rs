@@ -35,7 +35,7 @@ mod shape;
 mod skin;
 mod write;
 
-pub use cell::Cell;
+pub use cell::{Cell, cell_nodes};
 pub use check::{Diagnosis, diagnose, diagnose_apart};
 pub use gmsh::read;
 pub use info::Info;
@@ -143,11 +143,7 @@ impl Mesh {
 
     /// The nodes that the elements of `region` use, ascending, each once.
     pub fn region_nodes(&self, region: &Region) -> Vec<usize> {
-        let mut nodes: Vec<usize> =
-            region.elements.iter().flat_map(|e| self.elements[*e].nodes()).copied().collect();
-        nodes.sort_unstable();
-        nodes.dedup();
-        nodes
+        cell_nodes(region.elements.iter().map(|e| &self.elements[*e]))
     }
 
     /// The file's number of node `node`.

@@ -64,13 +64,13 @@ impl<'a> FaceTree<'a> {
         tree
     }
 
-    /// The box of a face, with room for its curvature.
+    /// The box of a face, widened for its curvature.
     fn bounds(&self, face: &Cell) -> [[f64; 3]; 2] {
         let at = |k: usize| face.nodes().iter().map(move |node| self.nodes[*node][k]);
         let low: [f64; 3] = std::array::from_fn(|k| at(k).fold(f64::INFINITY, f64::min));
         let high: [f64; 3] = std::array::from_fn(|k| at(k).fold(f64::NEG_INFINITY, f64::max));
-        let room = if face.kind().is_first_order() { 0.0 } else { BULGE * norm(minus(high, low)) };
-        [low.map(|x| x - room), high.map(|x| x + room)]
+        let margin = if face.kind().is_first_order() { 0.0 } else { BULGE * norm(minus(high, low)) };
+        [low.map(|x| x - margin), high.map(|x| x + margin)]
     }
 
     fn grow(&mut self, range: std::ops::Range<usize>, boxes: &[[[f64; 3]; 2]]) -> usize {
