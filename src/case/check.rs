@@ -108,7 +108,7 @@ fn check_transient(root: &mut Report, case: &Case, transient: &TransientAnalysis
     }
     check_courses(root, case, transient);
     let loaded = case.contact.values().any(|contact| matches!(contact.pressing, Pressing::Load { .. }));
-    if transient.hold == HoldChoice::Load && !loaded {
+    if transient.hold == Some(HoldChoice::Load) && !loaded {
         let expected = "a contact that a load closes: one with an `approach` keeps that";
         let help = "Give the contact a `load` in place of its `approach`, or remove `hold`";
         root.fault("transient.hold", "\"load\", and no contact with a `load`", expected, help);

@@ -47,8 +47,8 @@ declare! {
         },
         /// Initial state of the motion.
         pub start: StartChoice = key::choice().or(StartChoice::Steady),
-        /// What a contact keeps in motion that a load closes.
-        pub hold: HoldChoice = key::choice().or(HoldChoice::Approach),
+        /// What contacts keep in motion that a load closes.
+        pub hold: Option<HoldChoice> = key::choice().optional().or_by("load of a contact with `load.NAME`, approach of the others", None),
         /// Initial disturbance.
         pub disturbance: Option<Disturbance> = key::table().optional(),
         /// Pushes by name.
@@ -61,6 +61,15 @@ declare! {
         pub load: BTreeMap<String, Course> = key::named(),
         /// How loud it is, if asked for.
         pub sound: Option<SoundAnalysis> = key::table().optional(),
+    }
+}
+
+impl TransientAnalysis {
+    /// What a contact keeps in motion that a load closes. Where the case does not say: a load that runs in time is a device whose
+    /// motion is known by its force; a constant one only says where the bodies stand, as in the complex eigenvalues.
+    pub fn hold_of(&self, contact: &str) -> HoldChoice {
+        let runs = self.load.contains_key(contact);
+        self.hold.unwrap_or(if runs { HoldChoice::Load } else { HoldChoice::Approach })
     }
 }
 
@@ -92,7 +101,8 @@ choices! {
 }
 
 choices! {
-    /// What a contact keeps in motion that a `load` closes; one with an `approach` always keeps that.
+    /// What a contact keeps in motion that a `load` closes; one with an `approach` always keeps that. Without this key a contact with
+    /// `[transient.load.NAME]` keeps its load, and one with a constant load the approach.
     pub enum HoldChoice {
         /// The approach at which it carries its load at rest, as in the complex eigenvalues: the bodies are clamped together, and
         /// ΣN varies with the motion.

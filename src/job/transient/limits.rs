@@ -110,14 +110,23 @@ impl InTime<'_> {
         let fastest = self.steps_of_a_period(disturbed, step);
         let mut all: Vec<String> =
             fastest.and_then(|(_, hz)| long_steps(hz, step, taken)).into_iter().collect();
+        let grows = self.complex.modes.modes.iter().any(|mode| mode.unstable());
         for pair in &self.system.pairs {
-            if let (Closing::Approach(_), HoldChoice::Load) = (pair.closing, wanted.hold) {
+            if let (Closing::Approach(_), Some(HoldChoice::Load)) = (pair.closing, wanted.hold) {
                 all.push(format!(
                     "The contact {} is closed by an approach, and keeps it: `transient.hold = \"load\"` is for contacts with a `load`.",
                     pair.name
                 ));
             }
-            let (Closing::Load(load), HoldChoice::Approach) = (pair.closing, wanted.hold) else { continue };
+            let holds = wanted.hold_of(&pair.name);
+            if holds == HoldChoice::Load && wanted.hold.is_none() && grows {
+                all.push(format!(
+                    "The contact {} keeps its load in motion, which runs in time; in the complex eigenvalues, of which some grow, it \
+                     keeps its approach. `transient.hold = \"approach\"` keeps that in motion, too.",
+                    pair.name
+                ));
+            }
+            let (Closing::Load(load), HoldChoice::Approach) = (pair.closing, holds) else { continue };
             let most = load * wanted.load.get(&pair.name).map_or(1.0, |course| course.range()[1]);
             let name = format!("{}_normal_force", pair.name);
             let reached =

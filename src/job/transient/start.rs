@@ -6,7 +6,7 @@ use crate::case::{HoldChoice, StartChoice, TransientAnalysis};
 use crate::equilibrium::{SteadyOptions, SteadySliding, solve_steady};
 use crate::error::Result;
 use crate::job::time_function::profile;
-use crate::system::{Closing, System};
+use crate::system::{Closing, ContactPair, System};
 use crate::transient::{Loading, NO_LOAD};
 
 /// Equilibria between the least and the greatest load; the approach is linear between two of them.
@@ -50,7 +50,7 @@ impl InTime<'_> {
     /// How the approach of each pair follows its load, where that runs in time.
     pub(super) fn loadings(&self, wanted: &TransientAnalysis) -> Result<Vec<Option<Loading>>> {
         let pairs = self.system.pairs.iter().enumerate();
-        let loading = |(k, pair): (usize, &crate::system::ContactPair)| {
+        let loading = |(k, pair): (usize, &ContactPair)| {
             let course = wanted.load.get(&pair.name);
             let (Some(course), Closing::Load(_)) = (course, pair.closing) else { return Ok(None) };
             let factors = course.range();
@@ -60,7 +60,7 @@ impl InTime<'_> {
                 press(&mut system.pairs[k].closing, factors[0] + share * (factors[1] - factors[0]));
                 Ok(solve_steady(&system, &SteadyOptions::default(), &())?.approach[k])
             };
-            let approaches = match wanted.hold {
+            let approaches = match wanted.hold_of(&pair.name) {
                 HoldChoice::Approach => (0..EQUILIBRIA).map(approach).collect::<Result<Vec<f64>>>()?,
                 HoldChoice::Load => vec![self.steady.approach[k]],
             };
@@ -71,11 +71,11 @@ impl InTime<'_> {
 
     /// The load \[N\] that each pair keeps in motion, where it keeps one.
     pub(super) fn loads(&self, wanted: &TransientAnalysis) -> Vec<Option<f64>> {
-        let load = |closing: Closing| match (wanted.hold, closing) {
+        let load = |pair: &ContactPair| match (wanted.hold_of(&pair.name), pair.closing) {
             (HoldChoice::Load, Closing::Load(load)) => Some(load),
             _ => None,
         };
-        self.system.pairs.iter().map(|pair| load(pair.closing)).collect()
+        self.system.pairs.iter().map(load).collect()
     }
 }
 
