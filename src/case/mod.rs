@@ -155,6 +155,11 @@ pub fn read_case(path: &Path) -> Result<Case> {
 }
 
 impl Case {
+    /// Whether external forces alone stress the structure, with the stiffness of that preload.
+    pub fn stressed_by_forces(&self) -> bool {
+        self.prestress && self.contact.is_empty()
+    }
+
     /// Reads a case from TOML text; `file` names it in faults and `folder` is where relative paths start. A case that is no
     /// file has an empty name: its faults have keys and no lines.
     ///

@@ -51,7 +51,8 @@ declare! {
         pub material: String = key::name("the name of a material"),
         /// Takes 4-node tetrahedra, 5-node pyramids and 6-node wedges, too, which are far too stiff in bending and shear (locking).
         pub allow_locking: bool = key::flag(false),
-        /// `full` or, of 20-node hexahedra, `reduced` (2 × 2 × 2 points): softer in bending, not locked where ν is near ½.
+        /// `full` or, of 20-node hexahedra, `reduced` (2 × 2 × 2 points): softer in bending, and less stiff where
+        /// ν is near ½; a hundredth of the full stiffness holds its hourglass modes.
         pub integration: Integration = key::choice().or(Integration::Full),
     }
 }

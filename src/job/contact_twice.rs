@@ -5,9 +5,10 @@ use super::regions::Regions;
 use crate::case::Case;
 use crate::error::{Fault, Faults};
 use crate::linalg::SparseVector;
+use crate::mesh::{Cell, cell_nodes};
 use crate::structure::{Model, Part};
 use crate::system::{ContactPair, ContactPoint};
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 /// Refuses contact points that are in the same place and press the same way: their stiffness would count twice. Points that are `given`,
 /// without a mesh, are the same only where they slide the same way, too: a body may rub on several others at once, each of which is pressed by
@@ -79,6 +80,30 @@ pub(super) fn surfaces_twice(
     }
 }
 
+/// Refuses a contact between faces that a tie joins: what is joined does not slide.
+pub(super) fn tied_and_in_contact(case: &Case, (regions, model): (&Regions, &Model), faults: &mut Faults) {
+    let nodes =
+        |cells: Vec<Cell>| -> BTreeSet<Vec<usize>> { cells.iter().map(|face| cell_nodes([face])).collect() };
+    let faces = |name: &str| {
+        let faces = counter_faces(name, regions, model, ("", "")).ok()?.faces;
+        Some(nodes(faces))
+    };
+    for (name, contact) in &case.contact {
+        let body = regions.region(&contact.body, "").ok().map(|region| nodes(regions.cells(region)));
+        let (Some(body), Some(counter)) = (body, faces(&contact.counter)) else { continue };
+        for (tie_name, tie) in &case.tie {
+            let (Some(on), Some(to)) = (faces(&tie.on), faces(&tie.to)) else { continue };
+            let common = |a: &BTreeSet<Vec<usize>>, b: &BTreeSet<Vec<usize>>| !a.is_disjoint(b);
+            if common(&body, &on) && common(&counter, &to) || common(&body, &to) && common(&counter, &on) {
+                let found = format!("faces that `tie.{tie_name}` joins");
+                let fault = Fault::new(format!("`contact.{name}`"), found, "faces that are free to slide");
+                let help = "Remove the contact or the tie, or give each a region of its own";
+                faults.push(fault.with_help(help));
+            }
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use crate::case::Case;
@@ -144,6 +169,41 @@ mod tests {
                     same,
                     "{one}{a} {two}{b}: {said}"
                 );
+            }
+        }
+    }
+
+    /// A contact and a tie between the same two plates, each of which names the whole plates or parts of them, in any order: a fault where
+    /// faces of both sides are the same.
+    #[test]
+    fn what_a_tie_joins_does_not_slide() {
+        let dir = tempfile::tempdir().unwrap();
+        let mut mesh = plate("low", 0.0);
+        mesh.append(plate("high", 0.01));
+        write(&dir.path().join("m.msh"), &mesh, 1.0).unwrap();
+        let sides = ["", "_left", "_right"];
+        let meet = |a: &str, b: &str| a == b || a.is_empty() || b.is_empty();
+        for member in 0..sides.len().pow(4) * 4 {
+            let side = |k: u32| sides[member / sides.len().pow(k) % 3];
+            let [a, b, c, d] = [0, 1, 2, 3].map(side);
+            let turned = member / sides.len().pow(4);
+            let order = |turned: bool| if turned { ["high", "low"] } else { ["low", "high"] };
+            let ([on, to], [body, counter]) = (order(turned % 2 == 1), order(turned / 2 == 1));
+            let text = format!(
+                "[mesh]\nfile = \"m.msh\"\nunit = \"m\"\n[material.steel]\nyoungs_modulus = 2e11\npoissons_ratio = 0.3\n\
+                 density = 7800\n[shell.low]\nmaterial = \"steel\"\nthickness = 0.01\n[shell.high]\nmaterial = \"steel\"\n\
+                 thickness = 0.01\n[support.low]\non = \"{to}_left\"\nheld = \"all\"\n\
+                 [tie.glue]\non = \"{on}{a}\"\nto = \"{to}{b}\"\n\
+                 [contact.pad]\nbody = \"{body}{c}\"\ncounter = \"{counter}{d}\"\napproach = 1e-6\nsliding_velocity = 1\n\
+                 sliding_direction = [1, 0, 0]\nnormal = {{ per = \"area\", stiffness = 1e10 }}\n\
+                 friction = {{ law = \"coulomb\", mu0 = 0.3 }}\n[cea]\nband = [0, 1000]\n"
+            );
+            let case = Case::parse("a.toml", &text, dir.path().into()).unwrap();
+            let said = Prepared::new(&case).map_or_else(|error| error.to_string(), |_| String::new());
+            let same = if on == body { meet(a, c) && meet(b, d) } else { meet(a, d) && meet(b, c) };
+            // Ends that are apart are a fault of their own.
+            if meet(a, b) && meet(c, d) {
+                assert_eq!(said.contains("faces that `tie.glue` joins"), same, "{text}{said}");
             }
         }
     }

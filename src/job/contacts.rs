@@ -1,6 +1,6 @@
 //! The contact pairs of a case: points from the meshes, laws from the case.
 
-use super::contact_twice::{points_twice, surfaces_twice};
+use super::contact_twice::{points_twice, surfaces_twice, tied_and_in_contact};
 use super::counter::{CounterFaces, counter_faces};
 use super::imported::given_points;
 use super::regions::Regions;
@@ -50,6 +50,7 @@ pub fn contact_pairs(
     }
     points_twice(&pairs, case.matrices.is_some(), &mut faults);
     surfaces_twice(case, (regions, model), &pairs, &mut faults);
+    tied_and_in_contact(case, (regions, model), &mut faults);
     faults.into_result(pairs)
 }
 

@@ -69,6 +69,18 @@ fn tie_of(
     warnings: &mut Vec<String>,
 ) -> Result<Coupling> {
     let place = format!("tie.{name}");
+    let [own, other] = [&tie.on, &tie.to].map(|side| mean_size(side, regions, model));
+    if let (Some(own), Some(other)) = (own, other)
+        && own > COARSE * other
+    {
+        warnings.push(format!(
+            "`{place}`: the faces of \"{}\" are {:.1} times as large as those of `{}`, whose nodes between are not joined: the joint is \
+             too soft. Exchange `on` and `to`: the finer surface follows",
+            tie.on,
+            own / other,
+            tie.to
+        ));
+    }
     let found = projected(&place, [&tie.on, &tie.to], tie.within, (regions, model), warnings)?;
     if found.largest_gap > 0.0 {
         warnings.push(format!(
@@ -79,6 +91,17 @@ fn tie_of(
         ));
     }
     Ok(Coupling { name: format!("`{place}`"), constraints: found.constraints })
+}
+
+/// Faces of a surface that follows may be so much larger than those of the other.
+const COARSE: f64 = 1.2;
+
+/// √(mean area) of the faces of a surface \[m\], of half that of second order, which have a node in the middle of each side.
+fn mean_size(name: &str, regions: &Regions, model: &Model) -> Option<f64> {
+    let faces = counter_faces(name, regions, model, ("", "")).ok()?.faces;
+    let area: f64 = tributary(&model.nodes, &faces).iter().sum();
+    let sides = faces.iter().map(|face| if face.kind().is_first_order() { 1.0 } else { 4.0 });
+    Some((area / sides.sum::<f64>()).sqrt()).filter(|size| size.is_finite())
 }
 
 /// The surface `on`, projected on the surface `to`; `warnings` say which nodes are too far away.
@@ -106,10 +129,13 @@ fn projected(
                 let nearest = found.far.iter().map(|(_, gap)| *gap).fold(*gap, f64::min);
                 let (within, nearest) = (given(found.within), given(nearest));
                 let what = format!("no node within {within} m of `{to}`: the nearest is {nearest} m away");
-                (
-                    what,
-                    "Bring the surfaces together, check the unit of the mesh, or give a larger `within` to a [tie]",
-                )
+                let help = match place.starts_with("tie.") {
+                    true => {
+                        "Bring the surfaces together, check the unit of the mesh, or give a larger `within`"
+                    }
+                    false => "Bring the surfaces together, or check the unit of the mesh",
+                };
+                (what, help)
             }
             None => (format!("nodes that `{to}` has, too"), "They are joined already: remove this table"),
         };

@@ -1,15 +1,17 @@
 //! Frequency responses of a case.
 
-use super::modes::{check_damping_frequencies, damping_of_response, identify, labels, response_needs};
+use super::modes::{
+    check_damping_frequencies, damping_of_response, identify, labels, response_needs, without_prestress,
+};
 use super::motion::{Motion, motion};
 use super::prepared::Prepared;
-use crate::case::{FrfAnalysis, FrfContact, FrfSolution, UniversalForm};
-use crate::equilibrium::SteadySliding;
+use crate::case::{Case, FrfAnalysis, FrfContact, FrfSolution, UniversalForm};
+use crate::equilibrium::{SteadySliding, closed_structure};
 use crate::error::{Error, Faults, Result};
 use crate::linalg::{SparseMatrix, SparseVector, c64};
-use crate::modal::RealModes;
+use crate::modal::{ModesWanted, RealModes, compute};
 use crate::progress::Observer;
-use crate::reduction::{DampingOfModes, Receptance, Reduced};
+use crate::reduction::{DampingOfModes, MODES, Receptance, Reduced};
 use crate::results::{FrfResponse, FrfResult, PlaceAndDirection, Resonance};
 use crate::stability::{DAMPERS, Harmonic, is_unbounded};
 use rayon::prelude::*;
@@ -34,6 +36,7 @@ const NAMED: usize = 5;
 pub struct PreparedFrf<'a> {
     name: &'a str,
     wanted: &'a FrfAnalysis,
+    stressed: bool,
     force: Motion,
     seen: Vec<(String, Motion)>,
     beside: Vec<(usize, Vec<f64>)>,
@@ -60,7 +63,8 @@ pub fn frfs<'a>(prepared: &Prepared<'a>) -> Result<Vec<PreparedFrf<'a>>> {
         if wanted.response.is_empty() {
             seen.push(("drive_point".into(), force.clone()));
         }
-        all.push(PreparedFrf { name, wanted, force, seen, beside: Vec::new() });
+        let stressed = prepared.case.stressed_by_forces();
+        all.push(PreparedFrf { name, wanted, stressed, force, seen, beside: Vec::new() });
     }
     faults.into_result(all)
 }
@@ -71,9 +75,15 @@ impl PreparedFrf<'_> {
         self.name
     }
 
-    /// Whether it is about steady sliding.
+    /// Whether it is about steady sliding, or, without contacts, about what the forces of a case with `prestress` stress.
     pub fn slides(&self) -> bool {
-        self.wanted.contact == FrfContact::Sliding
+        self.wanted.contact == FrfContact::Sliding || self.stressed
+    }
+
+    /// What to know before it is computed.
+    pub fn warning(&self, case: &Case) -> Option<String> {
+        let open = self.wanted.contact == FrfContact::Open;
+        without_prestress(case, &format!("frf.{}", self.name), "sliding").filter(|_| open)
     }
 
     /// Where the force acts.
@@ -88,7 +98,7 @@ impl PreparedFrf<'_> {
 
     /// Whether force and motion may change places: nothing slides.
     pub fn reciprocal(&self) -> bool {
-        !self.slides()
+        self.wanted.contact == FrfContact::Open
     }
 
     /// The requested frequencies \[Hz\].
@@ -114,11 +124,11 @@ impl PreparedFrf<'_> {
         steady: Option<&SteadySliding>,
         observer: &dyn Observer,
     ) -> Result<(FrfResult, Vec<Vec<c64>>)> {
-        let FrfAnalysis { quantity, band, contact, solution, .. } = *self.wanted;
+        let FrfAnalysis { quantity, band, solution, .. } = *self.wanted;
         let places: Vec<SparseVector> = self.seen.iter().map(|(_, m)| m.direction.clone()).collect();
         let forms: Vec<SparseVector> =
             std::iter::once(&self.force.direction).chain(&places).cloned().collect();
-        let steady = steady.filter(|_| contact == FrfContact::Sliding);
+        let steady = steady.filter(|_| self.slides());
         check_damping_frequencies(&prepared.system.structure, prepared.case, 2.0 * band[1])?;
         let Receptance { system, steady, real, reduced } = {
             let of = |mass: &SparseMatrix, real: &RealModes| damping_of_response(mass, real, prepared.case);
@@ -132,7 +142,11 @@ impl PreparedFrf<'_> {
         let seen: Vec<SparseVector> = seen.collect();
         let superposed = |hz: f64| few.at(TAU * hz, &force, &seen);
         let direct = |hz: f64| full.at(TAU * hz, &self.force.direction, &places);
-        let mut resonances = self.resonances(prepared, &real)?;
+        let closed = match self.wanted.contact {
+            FrfContact::Open => None,
+            FrfContact::Sliding => Some(closed_modes(&reduced, &small, MODES * band[1], observer)?),
+        };
+        let mut resonances = self.resonances(prepared, closed.as_ref().unwrap_or(&real))?;
         for resonance in &mut resonances {
             resonance.undamped = unbounded(resonance.frequency_hz, &superposed)?;
         }
@@ -186,7 +200,7 @@ impl PreparedFrf<'_> {
             name: self.name.to_string(),
             quantity,
             force: place_of(&self.force),
-            about: self.about(&reduced),
+            about: self.about(&reduced, closed.as_ref().unwrap_or(&real).negative),
             excitation: self.force.place.clone(),
             responses: responses.collect(),
             resonances,
@@ -200,8 +214,9 @@ impl PreparedFrf<'_> {
     }
 
     /// State of the contacts and method of the response, in words.
-    fn about(&self, reduced: &Reduced) -> String {
+    fn about(&self, reduced: &Reduced, negative: usize) -> String {
         let contacts = match self.wanted.contact {
+            _ if self.stressed => "with the stiffness of the preload",
             FrfContact::Open => "contacts open",
             FrfContact::Sliding => "contacts in steady sliding",
         };
@@ -212,7 +227,11 @@ impl PreparedFrf<'_> {
             }
             FrfSolution::Direct => "solved at full order at every frequency".into(),
         };
-        format!("{contacts}; {way}")
+        let unstable = match negative {
+            0 => String::new(),
+            n => format!("; beyond buckling, {n} of the modes with ω² < 0: no steady response is reached"),
+        };
+        format!("{contacts}; {way}{unstable}")
     }
 
     /// The real modes in the band, up to [`BESIDE`] its ends, and how much of them shows.
@@ -241,6 +260,18 @@ impl PreparedFrf<'_> {
         };
         Ok(inside.iter().zip(&products).map(resonance).collect())
     }
+}
+
+/// The real modes below `hz` \[Hz\] with the contacts closed and without friction, of the small system that gives the response.
+fn closed_modes(
+    reduced: &Reduced,
+    small: &SteadySliding,
+    hz: f64,
+    observer: &dyn Observer,
+) -> Result<RealModes> {
+    let structure = closed_structure(&reduced.system, small)?;
+    let (modes, _) = compute(&structure, ModesWanted::BelowHz(hz), observer)?;
+    Ok(RealModes { shapes: &reduced.basis * &modes.shapes, ..modes })
 }
 
 fn place_of(motion: &Motion) -> PlaceAndDirection {

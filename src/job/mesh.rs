@@ -1,6 +1,6 @@
 //! The mesh of a case: read from a file, or generated.
 
-use crate::case::{AnnulusMesh, Case, MeshSource, PlateMesh, RigMesh};
+use crate::case::{AnnulusMesh, Case, MeshSource, PlateMesh, RigMesh, SpringPer};
 use crate::error::{Error, Fault, Faults, Result};
 use crate::mesh::generate::{self, BarSide, BarSpec, DiscSpec, Faces, Grading, PlateSpec, RigSpec};
 use crate::mesh::{self, Mesh};
@@ -21,7 +21,10 @@ pub(super) fn read_mesh(case: &Case, source: &MeshSource) -> Result<(Mesh, Vec<S
     };
     let mesh = mesh.map_err(|error| by_keys(error, source))?;
     let contacts = case.contact.values().map(|contact| [contact.body.as_str(), contact.counter.as_str()]);
-    let pairs = contacts.chain(case.tie.values().map(|tie| [tie.on.as_str(), tie.to.as_str()]));
+    let springs = case.spring.values().filter(|spring| spring.per == SpringPer::Area);
+    let springs = springs.filter_map(|spring| Some([spring.on.as_str(), spring.to.as_deref()?]));
+    let ties = case.tie.values().map(|tie| [tie.on.as_str(), tie.to.as_str()]);
+    let pairs = contacts.chain(ties).chain(springs);
     let diagnosis = mesh::diagnose_apart(&mesh, &pairs.collect::<Vec<_>>());
     let key = match source {
         MeshSource::File { .. } => "file",

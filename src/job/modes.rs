@@ -98,6 +98,23 @@ pub fn of_the_whole(prepared: &Prepared, analysis: &ModesAnalysis) -> bool {
         && (analysis.parts.is_empty() || parts.all(|part| analysis.parts.contains(part)))
 }
 
+/// The state of the contacts in a real-mode analysis, and with it whether the stiffness of the preload counts: without contacts the whole
+/// is as its forces stress it.
+pub fn contact_state(prepared: &Prepared, analysis: &ModesAnalysis) -> ContactState {
+    let stressed = prepared.case.stressed_by_forces() && of_the_whole(prepared, analysis);
+    if stressed { ContactState::Closed } else { analysis.contact }
+}
+
+/// What to know where `prestress` does not act on an analysis at `place` of the whole with open contacts.
+pub fn without_prestress(case: &Case, place: &str, other: &str) -> Option<String> {
+    (case.prestress && !case.contact.is_empty()).then(|| {
+        format!(
+            "{place} is of open contacts, where nothing presses: `prestress` does not act on it. `contact = \"{other}\"` has the \
+             stiffness of the preload"
+        )
+    })
+}
+
 /// Real modes with names and effective masses.
 pub fn named(prepared: &Prepared, name: &str, modes: RealModes, assembled: &Assembled) -> NamedModes {
     let (moving_part, names) = identify(prepared, &modes, assembled).into_iter().unzip();

@@ -7,7 +7,6 @@ use crate::linalg::{
 };
 use crate::progress::Observer;
 use crate::system::Structure;
-use faer::Mat;
 use std::f64::consts::TAU;
 
 /// Which modes are wanted.
@@ -100,8 +99,18 @@ fn modes_and_factor(structure: &Structure, pairs: Eigenpairs) -> (RealModes, Shi
         counted: pairs.sturm.counted,
         found: pairs.values.len(),
     };
+    // Those of the lowest modes, as far as they have none or a negative one.
+    let mut energies: Vec<[f64; 2]> = Vec::new();
+    for k in 0..pairs.values.len() {
+        let [energy, size] = strain_energy(&structure.stiffness, pairs.vectors.col_as_slice(k));
+        energies.push([energy, size]);
+        if energy > STRAINLESS * size {
+            break;
+        }
+    }
     let modes = RealModes {
-        rigid_bodies: count_rigid_bodies(&structure.stiffness, &pairs.values, &pairs.vectors),
+        rigid_bodies: count_rigid_bodies(&pairs.values, &energies),
+        negative: energies.iter().take_while(|[energy, size]| *energy < -STRAINLESS * size).count(),
         eigenvalues: pairs.values,
         shapes: pairs.vectors,
         backward_errors: pairs.backward_errors,
@@ -110,23 +119,26 @@ fn modes_and_factor(structure: &Structure, pairs: Eigenpairs) -> (RealModes, Shi
     (modes, ShiftedStiffness { shift: pairs.shift, factor: pairs.factor })
 }
 
+/// A strain energy below this part of the sum of the magnitudes of its terms is none.
+const STRAINLESS: f64 = 1e-12;
+
+/// φᵀKφ of a shape, and the sum of the magnitudes of its terms.
+fn strain_energy(stiffness: &SparseMatrix, shape: &[f64]) -> [f64; 2] {
+    let (mut energy, mut size) = (0.0, 0.0);
+    for j in 0..stiffness.ncols() {
+        for (i, v) in stiffness.row_idx_of_col(j).zip(stiffness.val_of_col(j)) {
+            let term = shape[i] * v * shape[j];
+            energy += term;
+            size += term.abs();
+        }
+    }
+    [energy, size]
+}
+
 /// The number of leading modes with ω ≤ 1e-3 of the first elastic one and no strain energy: φᵀKφ vanishes against the
 /// sum of the magnitudes of its terms.
-fn count_rigid_bodies(stiffness: &SparseMatrix, eigenvalues: &[f64], shapes: &Mat<f64>) -> usize {
-    let strainless = (0..eigenvalues.len())
-        .take_while(|k| {
-            let shape = shapes.col(*k);
-            let (mut energy, mut size) = (0.0, 0.0);
-            for j in 0..stiffness.ncols() {
-                for (i, v) in stiffness.row_idx_of_col(j).zip(stiffness.val_of_col(j)) {
-                    let term = shape[i] * v * shape[j];
-                    energy += term;
-                    size += term.abs();
-                }
-            }
-            energy.abs() <= 1e-12 * size
-        })
-        .count();
+fn count_rigid_bodies(eigenvalues: &[f64], energies: &[[f64; 2]]) -> usize {
+    let strainless = energies.iter().take_while(|[energy, size]| energy.abs() <= STRAINLESS * size).count();
     (0..=strainless)
         .rev()
         .find(|n| {

@@ -38,6 +38,9 @@ pub struct RealModes {
     pub backward_errors: Vec<f64>,
     /// How many of the first modes are rigid-body motions.
     pub rigid_bodies: usize,
+    /// How many of the first modes have ω² < 0 beyond rounding: the state is unstable, as that of a structure loaded beyond its
+    /// buckling load is, and leaves it as exp(√(−ω²) t).
+    pub negative: usize,
     /// The Sturm count.
     pub certificate: SturmCertificate,
 }
@@ -64,7 +67,7 @@ impl SturmCertificate {
 }
 
 impl RealModes {
-    /// Natural frequency of mode `k` \[Hz\]; 0 for a rigid-body mode whose ω² came out negative by round-off.
+    /// Natural frequency of mode `k` \[Hz\]; 0 where ω² is negative, as by round-off of a rigid-body mode, or really (`negative`).
     pub fn frequency_hz(&self, k: usize) -> f64 {
         self.eigenvalues[k].max(0.0).sqrt() / std::f64::consts::TAU
     }
@@ -82,6 +85,7 @@ impl RealModes {
             shapes: self.shapes.subcols(0, count).to_owned(),
             backward_errors: self.backward_errors[..count].to_vec(),
             rigid_bodies: self.rigid_bodies.min(count),
+            negative: self.negative.min(count),
             certificate: self.certificate.clone(),
         })
     }

@@ -56,6 +56,7 @@ mod tests {
             shapes: Mat::zeros(0, 2),
             backward_errors: vec![0.0; 2],
             rigid_bodies: 0,
+            negative: 0,
             certificate: SturmCertificate {
                 below_hz: 300.0,
                 shifts_hz: [300.0; 2],

@@ -26,6 +26,7 @@ pub(crate) fn dense_modes(system: &System, count: usize) -> RealModes {
         shapes,
         backward_errors: vec![0.0; count],
         rigid_bodies: 0,
+        negative: 0,
         certificate,
     }
 }

@@ -9,7 +9,7 @@
 
 mod receptance;
 
-pub use receptance::{DampingOfModes, Receptance};
+pub use receptance::{DampingOfModes, MODES, Receptance};
 
 use crate::equilibrium::{SteadySliding, tangent_stiffness};
 use crate::error::Result;

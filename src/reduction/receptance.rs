@@ -8,8 +8,8 @@ use crate::modal::{ModesWanted, RealModes, compute};
 use crate::progress::Observer;
 use crate::system::{ModalDamping, Structure, System};
 
-/// Real modes are computed up to this many times the highest frequency.
-const MODES: f64 = 2.0;
+/// Real modes of a response are computed up to this many times the highest frequency.
+pub const MODES: f64 = 2.0;
 
 /// Modal damping of a structure.
 pub struct DampingOfModes<'a> {

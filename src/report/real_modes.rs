@@ -33,10 +33,28 @@ fn finding(sets: &[&NamedModes]) -> Finding {
     let words = format!("Real modes: {}.", ranges.join(", "));
     let wrong: Vec<String> =
         sets.iter().filter(|set| !set.modes.certificate.holds()).map(|set| certificate(set)).collect();
+    let unstable: Vec<String> = sets.iter().filter_map(|set| negative(set)).collect();
     match wrong.is_empty() {
+        _ if !unstable.is_empty() => {
+            Finding::new(FindingClass::Bad, format!("{words} {}", unstable.join(" ")))
+        }
         true => Finding::new(FindingClass::Basis, format!("{words} None is missing: as many were counted.")),
         false => Finding::new(FindingClass::Bad, format!("{words} {}", wrong.join(" "))),
     }
+}
+
+/// The modes with ω² < 0, in words.
+fn negative(set: &NamedModes) -> Option<String> {
+    let negative = set.modes.negative;
+    let fastest = set.modes.eigenvalues.first().map_or(0.0, |square| (-square).max(0.0).sqrt());
+    let modes = if negative == 1 { "1 mode has".into() } else { format!("{negative} modes have") };
+    (negative > 0).then(|| {
+        format!(
+            "Unstable: {modes} ω² < 0 in {}; the state is beyond buckling, and is left as exp(σt), σ up to {} 1/s.",
+            set.name,
+            given(fastest)
+        )
+    })
 }
 
 /// The backward error of each mode.
@@ -80,7 +98,9 @@ fn table(results: &RunResults, set: &NamedModes) -> ReportTable {
     for k in 0..set.modes.len() {
         // The frequency of a rigid-body motion is round-off.
         let show = if k < set.modes.rigid_bodies { fixed } else { hertz };
-        let mut cells = vec![(k + 1).to_string(), show(set.modes.frequency_hz(k), 1)];
+        let frequency =
+            if k < set.modes.negative { "ω² < 0".into() } else { show(set.modes.frequency_hz(k), 1) };
+        let mut cells = vec![(k + 1).to_string(), frequency];
         if parted {
             cells.insert(0, set.moving_part[k].clone().unwrap_or("–".into()));
         }

@@ -59,7 +59,7 @@ pub struct FrfResponse {
     pub values: Vec<c64>,
 }
 
-/// A real mode, and how much of it shows.
+/// A real mode, with closed contacts and without friction where they slide, and how much of it shows.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Resonance {
     /// f \[Hz\].

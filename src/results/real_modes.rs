@@ -127,6 +127,12 @@ impl NamedModes {
                 "how many of them move the body as a rigid one",
                 self.modes.rigid_bodies,
             )
+            .value(
+                "negative",
+                "1",
+                "how many of them have ω² < 0: the state is unstable, and leaves it as exp(√(−ω²) t)",
+                self.modes.negative,
+            )
             .value("total_mass_kg", "kg", "total mass", self.total_mass)
             .group(certificate)
     }

@@ -19,6 +19,7 @@ mod limits;
 mod motion;
 mod mutated_cases;
 mod parts;
+mod preload;
 mod terminal;
 mod uncertainty;
 mod wrong_inputs;

@@ -26,12 +26,15 @@ fn plan<'a>(prepared: &'a Prepared<'a>, scope: Scope) -> Result<Box<dyn Planned<
     let mut frfs = faults.take(frfs(prepared)).unwrap_or_default();
     frfs.retain(|frf| scope == Scope::All || has_measured_frf(prepared.case, frf.name()));
     let tests = faults.take(Tests::of_responses(prepared, &mut frfs)).unwrap_or_default();
-    faults.into_result(Box::new(PlannedFrfs { frfs, tests }))
+    let open = frfs.iter().filter_map(|frf| frf.warning(prepared.case));
+    let warnings = tests.warnings.iter().cloned().chain(open).collect();
+    faults.into_result(Box::new(PlannedFrfs { frfs, tests, warnings }))
 }
 
 struct PlannedFrfs<'a> {
     frfs: Vec<frf::PreparedFrf<'a>>,
     tests: Tests,
+    warnings: Vec<String>,
 }
 
 impl<'a> Planned<'a> for PlannedFrfs<'a> {
@@ -40,7 +43,7 @@ impl<'a> Planned<'a> for PlannedFrfs<'a> {
     }
 
     fn warnings(&self) -> Vec<String> {
-        self.tests.warnings.clone()
+        self.warnings.clone()
     }
 
     fn run(self: Box<Self>, run: &mut Run<'a, '_>) -> Result<()> {

@@ -5,7 +5,9 @@ use crate::case::{ContactState, ModesAnalysis};
 use crate::equilibrium;
 use crate::error::{Faults, Result};
 use crate::job::compare::{Tests, has_measured_modes};
-use crate::job::modes::{check_part, named, of_the_whole, part_modes, wanted};
+use crate::job::modes::{
+    check_part, contact_state, named, of_the_whole, part_modes, wanted, without_prestress,
+};
 use crate::job::prepared::Prepared;
 use crate::job::run::Run;
 use crate::modal;
@@ -33,27 +35,33 @@ fn plan<'a>(prepared: &'a Prepared<'a>, scope: Scope) -> Result<Box<dyn Planned<
     for (name, _) in &sets {
         faults.take(check_part(prepared, name));
     }
-    faults.into_result(Box::new(Sets { sets, tests }))
+    faults.into_result(Box::new(Sets { prepared, sets, tests }))
 }
 
 struct Sets<'a> {
+    prepared: &'a Prepared<'a>,
     sets: Vec<(&'a str, &'a ModesAnalysis)>,
     tests: Tests,
 }
 
 impl<'a> Planned<'a> for Sets<'a> {
     fn slides(&self) -> bool {
-        self.sets.iter().any(|(_, set)| set.contact == ContactState::Closed)
+        self.sets.iter().any(|(_, set)| contact_state(self.prepared, set) == ContactState::Closed)
     }
 
     fn warnings(&self) -> Vec<String> {
-        self.tests.warnings.clone()
+        let whole = self.sets.iter().filter(|(_, set)| of_the_whole(self.prepared, set));
+        let open = whole.filter_map(|(name, _)| {
+            without_prestress(self.prepared.case, &format!("modes.{name}"), "closed")
+        });
+        self.tests.warnings.iter().cloned().chain(open).collect()
     }
 
     fn run(self: Box<Self>, run: &mut Run<'a, '_>) -> Result<()> {
         // Those with closed contact wait for steady sliding.
         for state in [ContactState::Open, ContactState::Closed] {
-            for (name, set) in self.sets.iter().filter(|(_, set)| set.contact == state) {
+            let of_state = |set: &ModesAnalysis| contact_state(self.prepared, set) == state;
+            for (name, set) in self.sets.iter().filter(|(_, set)| of_state(set)) {
                 let modes = match state {
                     ContactState::Open => open(run, name, set),
                     ContactState::Closed => closed(run, name, set),

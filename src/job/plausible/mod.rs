@@ -4,6 +4,7 @@
 //! Each warning gives what was found, what is expected and what to do.
 
 mod frequency;
+mod integration;
 mod material;
 mod resolution;
 mod size;
@@ -22,5 +23,6 @@ pub fn warnings(prepared: &Prepared) -> Vec<Fault> {
     if all.is_empty() {
         all = [theory::warnings(prepared), resolution::warnings(prepared)].concat();
     }
+    all.extend(integration::warnings(&prepared.model));
     prepared.case.places.located(all)
 }

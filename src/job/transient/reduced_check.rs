@@ -96,6 +96,7 @@ fn own_modes(reduced: &Reduced) -> RealModes {
         shapes: Mat::from_fn(m, m, |i, j| f64::from(i == order[j])),
         backward_errors: vec![0.0; m],
         rigid_bodies: squares.iter().take_while(|s| **s <= 0.0).count(),
+        negative: 0,
         certificate: SturmCertificate { below_hz, shifts_hz: [below_hz; 2], counted: [m; 2], found: m },
         eigenvalues: squares,
     }

@@ -41,6 +41,7 @@ pub(super) fn sweep(result: &SweepResult) -> Finding {
             });
             let more = match several.len().saturating_sub(NAMED) {
                 0 => String::new(),
+                1 => " and in 1 more range".into(),
                 more => format!(" and in {more} more ranges"),
             };
             let each = list(&each.collect::<Vec<_>>());

@@ -65,7 +65,13 @@ fn mode_table(result: &UncertaintyResult) -> ReportTable {
     let mut grows = grows;
     table.rows.retain(|_| grows.next().unwrap_or(true));
     if table.rows.is_empty() {
-        table.notes.push("No mode of the case is unstable in any sample.".into());
+        table.notes.push(match result.unstable.count {
+            0 => "No mode is unstable in any sample.".into(),
+            _ => {
+                "The modes that are unstable in samples are none of the case's own: those are stable in all."
+                    .into()
+            }
+        });
     }
     let others = result.study.modes.iter().flatten().map(|all| all.len() - result.study.reference.len());
     let others = others.filter(|count| *count > 0).count();

@@ -214,8 +214,15 @@ fn eigenvalue_work(analysis: &CompletedAnalysis<'_>, modes: &ComplexModes) -> f6
 
 /// The count agrees, and yet is no proof.
 fn weak(certificate: &Certificate) -> String {
+    let help = match certificate.dissipative {
+        true => "take more real modes (`cea.basis_below`)",
+        false => {
+            "damping that is negative somewhere, or not known to dissipate, makes that bound large, and more real modes \
+             (`cea.basis_below`) may not lower it"
+        }
+    };
     format!(
-        "The count of the unstable modes is no proof at full order: near {} Hz what the basis leaves out may be {} times what would change it; take more real modes (`cea.basis_below`)",
+        "The count of the unstable modes is no proof at full order: near {} Hz what the basis leaves out may be {} times what would change it; {help}",
         hertz(certificate.tightest[0], 1),
         significant(1.0 / certificate.margin, 2)
     )
