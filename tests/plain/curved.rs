@@ -56,7 +56,7 @@ fn order(exact: &[f64], model: impl Fn(usize) -> Model) -> (f64, [f64; 2]) {
 }
 
 /// Goal: a quarter of a thick ring between smooth planes, radii 30 and 50 mm, has modes of 2 and 0 waves around at the zeros of Gazis's
-/// determinant (validation/free-solids/reference.py), with order 4 in the eigenvalue.
+/// determinant (validation/free-solids/exact.py), with order 4 in the eigenvalue.
 #[test]
 fn curved_cells_of_a_ring_converge_with_order_four() {
     let exact = [7524.518321360, 22191.268233470];
@@ -78,7 +78,7 @@ fn curved_cells_of_a_ring_converge_with_order_four() {
 }
 
 /// Goal: an eighth of a sixth of a hollow sphere, radii 30 and 50 mm, breathes at the zero of the determinant of σ_r = 0 at both radii
-/// (validation/nafems-solids/reference.py), with an order in the eigenvalue that approaches 4 from below.
+/// (validation/nafems-solids/closed_form.py), with an order in the eigenvalue that approaches 4 from below.
 #[test]
 fn curved_cells_of_a_hollow_sphere_converge_with_order_four() {
     let exact = [35619.42528205];
