@@ -101,18 +101,21 @@ def cylinder_between_planes(inner, outer, length, below):
     return sorted((f for f in found if f[0] < below), key=lambda f: f[0])
 
 
-def ritz(inner, outer, length, n, degree, torsion=False, material=(E, NU, RHO)):
-    """Natural frequencies [Hz] of a free cylinder with cos n theta: polynomials of r and z, the regular ones where there is no hole."""
+def ritz(inner, outer, length, n, degree, torsion=False, material=(E, NU, RHO), along_z=None):
+    """Natural frequencies [Hz] of a free cylinder with cos n theta: polynomials of r and z, the regular ones where there is no hole; of a degree
+    of its own along z where one is given."""
+    degree_z = along_z or degree
     young, nu, rho = material
     shear, lame = young / 2 / (1 + nu), young * nu / ((1 + nu) * (1 - 2 * nu))
-    x, wx = np.polynomial.legendre.leggauss(degree + 8)
-    r, wr = (inner + outer) / 2 + (outer - inner) / 2 * x, wx * (outer - inner) / 2
-    z, wz = length / 2 * x, wx * length / 2
+    gauss = np.polynomial.legendre.leggauss
+    x, wr = gauss(degree + 8)
+    r, wr = (inner + outer) / 2 + (outer - inner) / 2 * x, wr * (outer - inner) / 2
+    z, wz = (length / 2 * v for v in gauss(degree_z + 8))
     r, z, weight = np.repeat(r, len(z)), np.tile(z, len(r)), np.outer(wr, wz).ravel()
     weight = weight * r
     legendre = np.polynomial.legendre.Legendre.basis
-    along = [legendre(i)(2 * z / length) for i in range(degree + 1)]
-    slopes = [legendre(i).deriv()(2 * z / length) * 2 / length if i else 0 * z for i in range(degree + 1)]
+    along = [legendre(i)(2 * z / length) for i in range(degree_z + 1)]
+    slopes = [legendre(i).deriv()(2 * z / length) * 2 / length if i else 0 * z for i in range(degree_z + 1)]
 
     def across(power):
         """Functions of r and their derivatives."""
