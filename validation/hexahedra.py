@@ -49,10 +49,21 @@ class Mesh:
                     found.append(nodes)
         return found
 
-    def write(self, path, name="solid", **regions):
-        """The cells are the region `name`; `regions` are faces by where their nodes are."""
-        groups = [(2, region, self.faces(where)) for region, where in regions.items()] + [(3, name, self.cells)]
-        kinds = {8: 16, 9: 10, 20: 17, 27: 12}
+    def lines(self, where):
+        """The edges all of whose nodes are where it says, each once."""
+        found = set()
+        for cell in self.cells:
+            for k, (a, b) in enumerate(EDGES):
+                line = cell[a], cell[b], cell[8 + k]
+                if all(where(*self.points[n - 1]) for n in line):
+                    found.add((min(line[:2]), max(line[:2]), line[2]))
+        return sorted(found)
+
+    def write(self, path, name="solid", lines=None, **regions):
+        """The cells are the region `name`; `regions` are faces, `lines` edges, by where their nodes are."""
+        groups = [(1, region, self.lines(where)) for region, where in (lines or {}).items()]
+        groups += [(2, region, self.faces(where)) for region, where in regions.items()] + [(3, name, self.cells)]
+        kinds = {3: 8, 8: 16, 9: 10, 20: 17, 27: 12}
         number = 0
         with open(path, "w") as file:
             print("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames", len(groups), sep="\n", file=file)

@@ -1,4 +1,4 @@
-"""Writes the meshes of FV22, FV32, FV41 and FV42 in metres: hexahedra of 20 or 27 nodes, of half the thickness or of a sector."""
+"""Writes the meshes of FV22, FV32, FV41, FV42 and FV52 in metres: hexahedra of 20 or 27 nodes, of half the thickness, a sector or the whole."""
 import math
 import sys
 
@@ -80,8 +80,16 @@ def sphere():
         name: lambda *x, k=k, sign=sign: abs(math.atan2(x[k], x[0]) - sign * angle) < 1e-9 for name, k, sign in sides})
 
 
+def solid_plate():
+    """FV52: 10 x 10 x 1 m, the mesh of the benchmark."""
+    mesh = Mesh(20)
+    mesh.block((4, 4, 1), lambda u, v, w: (10 * u, 10 * v, w))
+    mesh.write("fv52.msh", "plate", {"edges": lambda x, y, z: z < 1e-9 and min(x, y, 10 - x, 10 - y) < 1e-9})
+
+
 rhombic_plate()
 rhombic_middle()
 tapered_membrane()
 cylinder()
 sphere()
+solid_plate()

@@ -70,23 +70,13 @@ def slider(cells):
     mesh.block(cells, lambda u, v, w: (LENGTH * (towards_the_middle(u) - 0.5), WIDTH * (towards_the_middle(v) - 0.5), TOP + THICKNESS * (w - 1)))
     middle = TOP - THICKNESS / 2
 
-    def edges(axis, at):
-        """Lines of three nodes in the middle of a side."""
-        corners = [(0, 1), (1, 2), (2, 3), (3, 0)]
-        found = set()
-        for face in mesh.faces(lambda *x: abs(x[axis] - at) < 1e-9):
-            for k, (a, b) in enumerate(corners):
-                line = face[a], face[b], face[4 + k]
-                if all(abs(mesh.points[n - 1][2] - middle) < 1e-9 for n in line):
-                    found.add((min(line[:2]), max(line[:2]), line[2]))
-        return sorted(found)
-
     elements = [(16, (2, "slider_top"), nodes) for nodes in mesh.faces(lambda x, y, z: z > TOP - 1e-9)]
     for end, sign in ("min", -1), ("max", 1):
         elements += [(16, (2, f"slider_side_y_{end}"), nodes) for nodes in mesh.faces(lambda x, y, z: sign * y > WIDTH / 2 - 1e-9)]
     for axis, name, half in (0, "x", LENGTH / 2), (1, "y", WIDTH / 2):
         for end, sign in ("min", -1), ("max", 1):
-            elements += [(8, (1, f"slider_edge_{name}_{end}"), line) for line in edges(axis, sign * half)]
+            elements += [(8, (1, f"slider_edge_{name}_{end}"), line) for line in
+                         mesh.lines(lambda *x: abs(x[axis] - sign * half) < 1e-9 and abs(x[2] - middle) < 1e-9)]
     elements += [(17, (3, "slider"), nodes) for nodes in mesh.cells]
     return mesh.points, elements
 
