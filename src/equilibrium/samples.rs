@@ -3,7 +3,7 @@
 use crate::contact::{Coulomb, Exponential, NormalLaw, SlidingLaw};
 use crate::linalg::random::Random;
 use crate::linalg::{SparseMatrix, SparseVector, sparse};
-use crate::system::{Closing, ContactPair, ContactPoint, Damping, Structure, System};
+use crate::system::{Closing, ContactPair, ContactPoint, Coupling, Damping, Skew, Structure, System};
 use std::sync::Arc;
 
 /// A sparse matrix from its dense rows.
@@ -49,6 +49,20 @@ pub(crate) fn pair(
     velocity: f64,
 ) -> ContactPair {
     ContactPair { name: "pair".into(), points, law: Arc::new(law), closing, sliding_velocity: velocity }
+}
+
+/// Random skew parts of full rank, gyroscopic of the size `spin` and circulatory of the size `friction`.
+pub(crate) fn skew_parts(n: usize, seed: u64, spin: f64, friction: f64) -> Coupling {
+    let mut random = Random::seeded(seed);
+    let mut skew = |size: f64| {
+        let below: Vec<f64> = (0..n).map(|_| size * random.next()).collect();
+        let value = |i: usize, j: usize| match i.abs_diff(j) {
+            1 | 5 => below[i.min(j)] * if i > j { 1.0 } else { -1.0 },
+            _ => 0.0,
+        };
+        Arc::new(sparse(n, value))
+    };
+    Coupling::sparse(Skew { stiffness: skew(friction), damping: skew(spin) })
 }
 
 /// The two-degree-of-freedom model: one mass, k₁ = 1 along x, k₂ = 1 at 45°, k_t along x, on a belt under it that

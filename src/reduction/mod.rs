@@ -13,7 +13,7 @@ pub use receptance::{DampingOfModes, MODES, Receptance};
 
 use crate::equilibrium::{SteadySliding, tangent_stiffness};
 use crate::error::Result;
-use crate::linalg::dense::symmetric_eigen;
+use crate::linalg::dense::{product, symmetric_eigen};
 use crate::linalg::factor::factorize;
 use crate::linalg::multivector::{beside, combine, expand, gram};
 use crate::linalg::sparse::{add_scaled, dense_columns, diagonal_matrix, entry, times};
@@ -124,7 +124,7 @@ pub fn reduce(
     Ok(Reduced { system, basis, inertia, modes })
 }
 
-/// A coupling seen through V; sparse skew parts act between its coordinates.
+/// A coupling seen through V; beside sparse skew parts all of it acts between its coordinates.
 fn seen_coupling(basis: &Mat<f64>, rest: &Coupling) -> Coupling {
     match &rest.skew {
         None => {
@@ -132,11 +132,16 @@ fn seen_coupling(basis: &Mat<f64>, rest: &Coupling) -> Coupling {
         }
         Some(skew) => {
             // A product with a matrix stored by columns is that with its transpose.
-            let within = |a: &SparseMatrix| -gram(basis.as_ref(), times(a, basis.as_ref()).as_ref());
+            let of_skew = |a: &SparseMatrix| -gram(basis.as_ref(), times(a, basis.as_ref()).as_ref());
+            let along = Mat::from_fn(basis.ncols(), rest.directions.len(), |i, k| {
+                rest.directions[k].dot(basis.col_as_slice(i))
+            });
+            let of_low_rank =
+                |a: &Mat<f64>| product(along.as_ref(), product(a.as_ref(), along.transpose()).as_ref());
             Coupling {
                 directions: (0..basis.ncols()).map(|k| SparseVector::from_entries([(k, 1.0)])).collect(),
-                stiffness: within(&skew.stiffness),
-                damping: within(&skew.damping),
+                stiffness: of_skew(&skew.stiffness) + of_low_rank(&rest.stiffness),
+                damping: of_skew(&skew.damping) + of_low_rank(&rest.damping),
                 skew: None,
             }
         }

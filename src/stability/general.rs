@@ -475,29 +475,18 @@ pub(super) mod tests {
     use super::super::{certified_modes, complex_modes};
     use super::*;
     use crate::bounds::{Origin::*, within};
-    use crate::equilibrium::samples::{random_system, sparse};
-    use crate::linalg::random::Random;
-    use crate::system::{Coupling, Skew, System};
+    use crate::equilibrium::samples::{random_system, skew_parts};
+    use crate::system::System;
 
     /// A random body with skew parts of full rank, gyroscopic (`spin`) and circulatory (`friction`), and damping of a kind; with
     /// contacts, where these are all that is not symmetric in K.
     pub(crate) fn rotating(n: usize, seed: u64, spin: f64, friction: f64) -> System {
         let mut system = damped(random_system(n, 2, 20.0, seed), seed % 8);
-        let mut random = Random::seeded(seed);
-        let mut skew = |size: f64| {
-            let below: Vec<f64> = (0..n).map(|_| size * random.next()).collect();
-            let value = |i: usize, j: usize| match i.abs_diff(j) {
-                1 | 5 => below[i.min(j)] * if i > j { 1.0 } else { -1.0 },
-                _ => 0.0,
-            };
-            std::sync::Arc::new(sparse(n, value))
-        };
-        let skew = Skew { stiffness: skew(friction), damping: skew(spin) };
         if friction > 0.0 {
             system.pairs.clear();
             system.load = vec![0.0; n];
         }
-        system.coupling = Some(Coupling::sparse(skew));
+        system.coupling = Some(skew_parts(n, seed, spin, friction));
         system
     }
 

@@ -115,7 +115,7 @@ impl Checkpoint {
 mod tests {
     use super::super::{Plan, Scheme, StepMethod, TimeProfile, march, resume};
     use super::*;
-    use crate::equilibrium::samples::random_system;
+    use crate::equilibrium::samples::{random_system, skew_parts};
     use crate::equilibrium::{SteadyOptions, solve_steady};
     use crate::linalg::c64;
     use crate::system::ModalDamping;
@@ -124,6 +124,7 @@ mod tests {
     fn a_march_that_was_put_away_goes_on_bit_for_bit() {
         for method in [StepMethod::Condensed, StepMethod::FullNewton] {
             let mut system = random_system(12, 3, 2.0, 4);
+            system.coupling = Some(skew_parts(12, 5, 3.0, 0.0));
             let basis = Mat::from_fn(12, 2, |i, j| ((1 + i) as f64 * (0.3 + j as f64)).sin());
             system.structure.damping.modal = Some(ModalDamping { basis, coefficients: vec![0.1, 0.2] });
             let steady = solve_steady(&system, &SteadyOptions::default(), &()).unwrap();

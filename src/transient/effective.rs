@@ -6,26 +6,27 @@ use super::scheme::Weights;
 use crate::error::{Error, Result};
 use crate::linalg::SparseVector;
 use crate::linalg::dense::product;
-use crate::linalg::factor::{HalfSolutions, factorize};
+use crate::linalg::factor::{HalfSolutions, SymbolicFactor, System, UnsymmetricFactor, factorize};
 use crate::linalg::lu::Lu;
 use crate::linalg::multivector::{combine, gram};
 use faer::{Accum, Mat, MatMut, MatRef};
 use rayon::prelude::*;
 
 /// A = (1−α_m)/(β Δt²) M + (1−α_f) c₁ C + (1−α_f) K = A₀ + B E Bᵀ: the modal part of C, E = (1−α_f) c₁ diag(c), apart from
-/// the sparse rest, which is factorised: A₀ = H J Hᵀ with the pivots J, H⁻¹ being the half of a solution that goes up the
-/// tree.
+/// the sparse rest with its skew parts, which is factorised: A₀ = H R, H⁻¹ being the half of a solution that goes up the tree and
+/// R⁻¹ that which goes down. Where nothing is skew R = J Hᵀ with the pivots J.
 ///
 /// The step solves A Δ = h + B w + P φ, with forces φ along the columns of P that depend on PᵀA⁻¹(h + B w). What is needed
-/// of the columns is seen halfway, in y = H⁻¹h, where each has few entries. With X = A₀⁻¹B, G = BᵀX, V = BᵀA₀⁻¹P,
+/// of the columns is seen halfway, in y = H⁻¹h: pᵀA₀⁻¹h = (R⁻ᵀp)ᵀy, where R⁻ᵀp has few entries. With G = BᵀA₀⁻¹B, V = BᵀA₀⁻¹P,
+/// W = PᵀA₀⁻¹B,
 ///
-/// s = w − (I + E G)⁻¹E (Xᵀh + G w),   PᵀA⁻¹(h + B w) = PᵀA₀⁻¹h + Vᵀs,   A₀Δ = h + P φ + B (s − (I + E G)⁻¹E V φ)
+/// s = w − (I + E G)⁻¹E (BᵀA₀⁻¹h + G w),   PᵀA⁻¹(h + B w) = PᵀA₀⁻¹h + W s,   A₀Δ = h + P φ + B (s − (I + E G)⁻¹E V φ)
 ///
 /// (Sherman, Morrison & Woodbury, in the form that allows modes without damping).
 #[derive(Debug)]
 pub(super) struct Effective {
     inverse: Inverse,
-    /// Halves of the columns of P: those that take forces in, and with the pivots those that measure.
+    /// Halves of the columns p of P: H⁻¹p, which takes forces in, and R⁻ᵀp, which measures.
     columns: Vec<[SparseVector; 2]>,
     /// PᵀA⁻¹P \[m/N\].
     pub(super) seen: Mat<f64>,
@@ -38,12 +39,19 @@ pub(super) struct Effective {
 #[derive(Debug)]
 enum Inverse {
     Factor(Box<dyn HalfSolutions>),
+    /// With skew parts.
+    Unsymmetric(UnsymmetricFactor<f64>),
     /// The diagonal of A₀⁻¹.
     Diagonal(Vec<f64>),
 }
 
 impl Inverse {
     fn new(model: &TransientModel<'_>, weights: &Weights) -> Result<Self> {
+        if model.skew.is_some() {
+            let sum = model.effective(weights);
+            let symbolic = SymbolicFactor::new(sum.symbolic())?;
+            return Ok(Inverse::Unsymmetric(UnsymmetricFactor::new(&symbolic, sum)?));
+        }
         let Some(Diagonal { mass, stiffness, viscous }) = model.products.diagonal() else {
             return Ok(Inverse::Factor(factorize(&model.effective(weights))?));
         };
@@ -65,24 +73,29 @@ impl Inverse {
     fn forward(&self, b: &[f64], y: &mut [f64]) {
         match self {
             Inverse::Factor(factor) => factor.forward(b, y),
+            Inverse::Unsymmetric(factor) => copy(&factor.forward(System::Plain, column(b)), y),
             Inverse::Diagonal(_) => y.copy_from_slice(b),
         }
     }
 
-    /// y ← J⁻¹y.
-    fn pivots(&self, y: &mut [f64]) {
+    /// R⁻ᵀb, given b and y = H⁻¹b: J⁻¹y where nothing is skew.
+    fn measure(&self, b: &[f64], y: &mut [f64]) {
         match self {
             Inverse::Factor(factor) => factor.pivots(y),
+            Inverse::Unsymmetric(factor) => copy(&factor.forward(System::Adjoint, column(b)), y),
             Inverse::Diagonal(values) => {
                 y.iter_mut().zip(values).for_each(|(y, value)| *y *= value);
             }
         }
     }
 
-    /// x = H⁻ᵀJ⁻¹y.
+    /// x = R⁻¹y.
     fn backward(&self, y: &mut [f64], x: &mut [f64]) {
         match self {
             Inverse::Factor(factor) => factor.backward(y, x),
+            Inverse::Unsymmetric(factor) => {
+                copy(&factor.backward(System::Plain, column(y).to_owned()), x);
+            }
             Inverse::Diagonal(values) => {
                 let scaled = y.iter().zip(values);
                 x.iter_mut().zip(scaled).for_each(|(x, (y, value))| *x = y * value);
@@ -96,26 +109,30 @@ impl Inverse {
         column.add_to(1.0, &mut b);
         self.forward(&b, &mut y);
         let taken = SparseVector::from_dense(&y);
-        self.pivots(&mut y);
+        self.measure(&b, &mut y);
         [taken, SparseVector::from_dense(&y)]
     }
 }
 
 #[derive(Debug)]
 struct ModalUpdate {
-    /// Halves of B.
+    /// H⁻¹B.
     halves: Mat<f64>,
+    /// R⁻ᵀB, where that is not J⁻¹H⁻¹B.
+    measures: Option<Mat<f64>>,
     /// G.
     seen: Mat<f64>,
     /// V.
     columns: Mat<f64>,
+    /// Wᵀ.
+    rows: Mat<f64>,
     /// (I + E G)⁻¹E V.
     answers: Mat<f64>,
     /// The diagonal of E.
     weights: Vec<f64>,
     /// I + E G.
     small: Lu<f64>,
-    /// Xᵀh + V φ.
+    /// BᵀA₀⁻¹h + V φ.
     motion: Mat<f64>,
     /// s, then what B is multiplied by.
     factors: Mat<f64>,
@@ -142,17 +159,35 @@ impl ModalUpdate {
         for j in 0..m {
             inverse.forward(basis.col_as_slice(j), &mut half);
             halves.col_as_slice_mut(j).copy_from_slice(&half);
-            inverse.pivots(&mut half);
+            inverse.measure(basis.col_as_slice(j), &mut half);
             measures.col_as_slice_mut(j).copy_from_slice(&half);
         }
-        let seen = gram(halves.as_ref(), measures.as_ref());
+        let seen = gram(measures.as_ref(), halves.as_ref());
         let small = Mat::from_fn(m, m, |i, j| weights[i] * seen[(i, j)] + if i == j { 1.0 } else { 0.0 });
-        let along = Mat::from_fn(m, columns.len(), |i, p| columns[p][1].dot(halves.col_as_slice(i)));
+        let along = |side: usize, of: &Mat<f64>| {
+            Mat::from_fn(m, columns.len(), |i, p| columns[p][side].dot(of.col_as_slice(i)))
+        };
+        let rows = along(1, &halves);
+        let (columns, measures) = match inverse {
+            Inverse::Unsymmetric(_) => (along(0, &measures), Some(measures)),
+            _ => (rows.clone(), None),
+        };
         let (motion, factors) = (Mat::zeros(m, 1), Mat::zeros(m, 1));
         let (answers, measured) = (Mat::zeros(0, 0), half);
         let small = Lu::new(small);
-        let mut update =
-            ModalUpdate { halves, seen, columns: along, answers, weights, small, motion, factors, measured };
+        let mut update = ModalUpdate {
+            halves,
+            measures,
+            seen,
+            columns,
+            rows,
+            answers,
+            weights,
+            small,
+            motion,
+            factors,
+            measured,
+        };
         update.answers = update.answer(&update.columns);
         update
     }
@@ -177,7 +212,7 @@ impl Effective {
             ModalUpdate::new(&modal.basis, weights, &inverse, &columns)
         });
         if let Some(update) = &modal {
-            seen -= product(update.columns.transpose(), update.answers.as_ref());
+            seen -= product(update.rows.transpose(), update.answers.as_ref());
         }
         Ok(Effective { inverse, columns, seen, modal, half: vec![0.0; n] })
     }
@@ -186,9 +221,14 @@ impl Effective {
     pub(super) fn begin(&mut self, h: &[f64], w: &Mat<f64>) {
         self.inverse.forward(h, &mut self.half);
         if let Some(update) = &mut self.modal {
-            update.measured.copy_from_slice(&self.half);
-            self.inverse.pivots(&mut update.measured);
-            update.motion = gram(update.halves.as_ref(), column(&update.measured));
+            update.motion = match &update.measures {
+                Some(measures) => gram(measures.as_ref(), column(&self.half)),
+                None => {
+                    update.measured.copy_from_slice(&self.half);
+                    self.inverse.measure(h, &mut update.measured);
+                    gram(update.halves.as_ref(), column(&update.measured))
+                }
+            };
             update.factors = w - update.answer(&(&update.motion + product(update.seen.as_ref(), w.as_ref())));
         }
     }
@@ -198,7 +238,7 @@ impl Effective {
         let motion = self.columns[column][1].dot(&self.half);
         match &self.modal {
             Some(update) => {
-                let share = update.columns.col_as_slice(column).iter().zip(update.factors.col_as_slice(0));
+                let share = update.rows.col_as_slice(column).iter().zip(update.factors.col_as_slice(0));
                 motion + share.map(|(v, s)| v * s).sum::<f64>()
             }
             None => motion,
@@ -229,4 +269,8 @@ impl Effective {
 
 fn column(x: &[f64]) -> MatRef<'_, f64> {
     MatRef::from_column_major_slice(x, x.len(), 1)
+}
+
+fn copy(of: &Mat<f64>, to: &mut [f64]) {
+    to.copy_from_slice(of.col_as_slice(0));
 }

@@ -10,11 +10,12 @@ use std::ops::Range;
 ///
 /// With X̄ the mean and ΔX the difference of n+1 and n, Newmark's formulas give exactly
 ///
-/// Δ(½vᵀMv + ½uᵀKu) = Δuᵀ(f̄ − C v̄ − D r̄) + W_alg,
-/// W_alg = (½−α_f) Δuᵀ(Δf − CΔv − KΔu − DΔr) + (γ−1+α_m) ΔuᵀMΔa − Δt²(β−½γ)\[ΔaᵀMā + (γ−½) ΔaᵀMΔa\],
+/// Δ(½vᵀMv + ½uᵀKu) = Δuᵀ(f̄ − C v̄ − N ū − D r̄) + W_alg,
+/// W_alg = (½−α_f) Δuᵀ(Δf − (C+G)Δv − KΔu − DΔr) + (γ−1+α_m) ΔuᵀMΔa − Δt²(β−½γ)\[ΔaᵀMā + (γ−½) ΔaᵀMΔa + ΔaᵀG v̄\],
 ///
-/// where W_alg is what the scheme itself adds or (mostly) takes; it vanishes for β = ¼, γ = ½, α = 0. What is left of
-/// the balance is the error of solving the step.
+/// where W_alg is what the scheme itself adds or (mostly) takes; it vanishes for β = ¼, γ = ½, α = 0. N and G are the skew parts of K
+/// and C: N is circulatory, and G, gyroscopic, does no work, as v̄ᵀG v̄ = 0. What is left of the balance is the error of solving
+/// the step.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Work {
     /// Δuᵀf̄ of constant load and excitations.
@@ -28,7 +29,7 @@ pub struct Work {
     /// Work of friction, which becomes heat or strain of bristles: Σ F̄₁(∫V dt − t₁ᵀΔu) − F̄₂ t₂ᵀΔu. The structure gains
     /// drive − heat.
     pub heat: f64,
-    /// Work of imported unsymmetric terms on the structure.
+    /// Work of imported unsymmetric terms on the structure: −Δuᵀ N ū of skew stiffness, and what friction of low rank does.
     pub coupling: f64,
     /// W_alg.
     pub algorithm: f64,
@@ -91,6 +92,14 @@ impl Work {
             force_change += moved * (to.pushes[k] - from.pushes[k]);
         }
         let mut work = Work { external, damping, kinetic, strain, ..Work::default() };
+        let mut gyroscopic = gyroscopic_of_low_rank(model, from, to);
+        work.coupling -= gyroscopic;
+        if let (Some(before), Some(after)) = (&from.skew, &to.skew) {
+            let skew = before.work(after, [u0, u1]);
+            work.coupling += skew.circulatory;
+            gyroscopic += skew.gyroscopic;
+            force_change += skew.change;
+        }
         for (d, (old, new)) in from.reaction.iter().zip(&to.reaction).enumerate() {
             // Δu along the directions of both ends, which differ where a contact travels.
             let ahead = to.along[(d, 0)] - to.before[(d, 0)];
@@ -116,7 +125,8 @@ impl Work {
         let lag = weights.step * weights.step * (scheme.beta - 0.5 * scheme.gamma);
         work.algorithm = (0.5 - scheme.alpha_f) * force_change
             + (scheme.gamma - 1.0 + scheme.alpha_m) * heavy
-            - lag * (mean + (scheme.gamma - 0.5) * change);
+            - lag * (mean + (scheme.gamma - 0.5) * change)
+            + gyroscopic;
         work
     }
 
@@ -156,4 +166,18 @@ impl Work {
             &mut self.strain,
         ]
     }
+}
+
+/// −Δuᵀ G v̄ of G = W ½(c − cᵀ) Wᵀ, the gyroscopic part of an imported coupling of low rank.
+fn gyroscopic_of_low_rank(model: &TransientModel<'_>, from: &State, to: &State) -> f64 {
+    let Some([_, c]) = model.coupling else { return 0.0 };
+    let first = model.n_directions() - c.nrows();
+    let moved = |i: usize| to.along[(first + i, 0)] - from.along[(first + i, 0)];
+    let rate = |i: usize| 0.5 * (to.along[(first + i, 1)] + from.along[(first + i, 1)]);
+    let (r, mut sum) = (c.nrows(), 0.0);
+    for j in 0..r {
+        let own: f64 = (0..r).map(|i| moved(i) * 0.5 * (c[(i, j)] - c[(j, i)])).sum();
+        sum -= own * rate(j);
+    }
+    sum
 }

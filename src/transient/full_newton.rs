@@ -22,6 +22,8 @@ pub(super) struct FullNewton<'a> {
     model: &'a TransientModel<'a>,
     weights: Weights,
     linear: SparseMatrix,
+    /// A₀ᵀ: a product with a matrix stored by columns is that with its transpose.
+    transposed: SparseMatrix,
     /// The diagonal of A₀.
     diagonal: Vec<f64>,
     reaction: Reaction,
@@ -30,8 +32,9 @@ pub(super) struct FullNewton<'a> {
 impl<'a> FullNewton<'a> {
     pub(super) fn new(model: &'a TransientModel<'a>, weights: Weights) -> Self {
         let linear = model.effective(&weights);
+        let transposed = linear.transpose().to_col_major().expect("memory for as many entries once more");
         let diagonal = diagonal(&linear);
-        FullNewton { model, weights, linear, diagonal, reaction: Reaction::new(model) }
+        FullNewton { model, weights, linear, transposed, diagonal, reaction: Reaction::new(model) }
     }
 
     /// ρ of each point, as if every degree of freedom moved by itself.
@@ -66,7 +69,7 @@ impl<'a> FullNewton<'a> {
             to.moment(),
             Some(Since { travel, approaches, bristles, duration, force, resistance }),
         );
-        let mut rho = multiply_vector(&self.linear, delta);
+        let mut rho = multiply_vector(&self.transposed, delta);
         if let Some(own) = &model.damping.modal {
             let [_, c, _] = self.weights.effective();
             let column = Mat::from_fn(delta.len(), 1, |i, _| delta[i]);

@@ -1,4 +1,5 @@
-//! Motion in time: implicit integration of M ü + C u̇ + K u + D r(Dᵀu, Dᵀu̇) = f with the contact laws as they are.
+//! Motion in time: implicit integration of M ü + (C + G) u̇ + (K + N) u + D r(Dᵀu, Dᵀu̇) = f with the contact laws as they are;
+//! G and N are sparse skew parts, gyroscopic and circulatory, where a system has them.
 //!
 //! [`Scheme`] is the generalised-α family, [`TransientModel`] what it needs of a system, [`march`] the run. The structure is
 //! factorised once for a time step; contact is condensed exactly onto the few directions in which it acts, so that a
@@ -22,6 +23,7 @@ mod products;
 mod reaction;
 mod rows;
 mod scheme;
+mod skew;
 mod solver;
 mod state;
 mod stepper;

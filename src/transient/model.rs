@@ -9,19 +9,21 @@ use crate::error::{Error, Fault, Result};
 use crate::linalg::sparse::add_scaled;
 use crate::linalg::{SparseMatrix, SparseVector};
 use crate::system::{
-    ContactForces, ContactLaw, ContactMotion, ContactTangent, Damping, FrictionAtRest, System,
+    ContactForces, ContactLaw, ContactMotion, ContactTangent, Damping, FrictionAtRest, Skew, System,
 };
 use faer::Mat;
 use std::borrow::Cow;
 
-/// M ü + C u̇ + (K + K_σ) u + D r = f: the structure, and the directions D in which contacts and imported unsymmetric
-/// terms act on it.
+/// M ü + (C + G) u̇ + (K + K_σ + N) u + D r = f: the structure, its sparse skew parts G and N, and the directions D in which contacts and
+/// imported unsymmetric terms of low rank act on it.
 #[derive(Debug)]
 pub struct TransientModel<'a> {
     pub(super) mass: &'a SparseMatrix,
     pub(super) damping: &'a Damping,
     /// K + K_σ(u₀).
     pub(super) stiffness: Cow<'a, SparseMatrix>,
+    /// N and G.
+    pub(super) skew: Option<&'a Skew>,
     /// Products with M, K and C.
     pub(super) products: Products,
     /// f \[N, N m\].
@@ -93,6 +95,7 @@ impl<'a> TransientModel<'a> {
         Ok(TransientModel {
             mass,
             damping,
+            skew: system.skew(),
             products: Products::new(mass, &stiffness, damping),
             stiffness,
             load: &system.load,
@@ -231,11 +234,12 @@ impl<'a> TransientModel<'a> {
         self.mass.nrows()
     }
 
-    /// A₀ = (1−α_m)/(β Δt²) M + (1−α_f) c₁ C + (1−α_f) K with the sparse part of C.
+    /// A₀ = (1−α_m)/(β Δt²) M + (1−α_f) c₁ (C + G) + (1−α_f) (K + N) with the sparse part of C.
     pub(super) fn effective(&self, weights: &Weights) -> SparseMatrix {
         let [m, c, k] = weights.effective();
         let mut terms = vec![(m, self.mass), (k, &*self.stiffness)];
         terms.extend(self.damping.viscous.as_deref().map(|viscous| (c, viscous)));
+        terms.extend(self.skew.iter().flat_map(|skew| [(c, &*skew.damping), (k, &*skew.stiffness)]));
         add_scaled(&terms)
     }
 }

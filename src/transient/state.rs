@@ -6,6 +6,7 @@ use super::products::Derived;
 use super::reaction::{Bristles, Moment, Reaction};
 use super::rows::combine;
 use super::scheme::Weights;
+use super::skew::SkewForces;
 use crate::equilibrium::SteadySliding;
 use crate::linalg::c64;
 use crate::linalg::multivector::gram;
@@ -24,6 +25,8 @@ pub struct State {
     pub(super) inertia: Mat<f64>,
     /// C v, C a of the sparse viscous matrix.
     pub(super) viscous: Option<Mat<f64>>,
+    /// Forces of the sparse skew parts.
+    pub(super) skew: Option<SkewForces>,
     /// Bᵀu, Bᵀv, Bᵀa of modal damping C = B diag(c) Bᵀ.
     pub(super) modal: Option<Mat<f64>>,
     /// Dᵀu, Dᵀv, Dᵀa, r × 3.
@@ -193,6 +196,7 @@ impl State {
             elastic: Mat::zeros(n, 3),
             inertia: Mat::zeros(n, 2),
             viscous: model.damping.viscous.as_ref().map(|_| Mat::zeros(n, 2)),
+            skew: model.skew.map(|_| SkewForces::new(n)),
             modal: model.damping.modal.as_ref().map(|modal| Mat::zeros(modal.coefficients.len(), 3)),
             along: Mat::zeros(r, 3),
             reaction: vec![0.0; r],
@@ -209,6 +213,9 @@ impl State {
     pub(super) fn derive(&mut self, model: &TransientModel<'_>) {
         let (elastic, inertia) = (&mut self.elastic, &mut self.inertia);
         model.products.derive(&self.motion, Derived { elastic, inertia, viscous: self.viscous.as_mut() });
+        if let (Some(skew), Some(forces)) = (model.skew, &mut self.skew) {
+            forces.derive(skew, &self.motion);
+        }
         for k in 0..3 {
             self.interface.motions(model, self.motion.col_as_slice(k), self.along.col_as_slice_mut(k));
         }

@@ -25,7 +25,9 @@ pub enum StepMethod {
 ///
 /// With u_{n+1} = u_t + Δ, v_{n+1} = v_t + c₁Δ, a_{n+1} = Δ/(β Δt²) and b = 1 − α_f the equation of motion is
 ///
-/// A Δ = h − b D r_{n+1}, h = f_α − α_m M a − b (K u_t + C v_t) − α_f (K u + C v + D r)_n.
+/// A Δ = h − b D r_{n+1}, h = f_α − α_m M a − b (K u_t + C v_t) − α_f (K u + C v + D r)_n,
+///
+/// where K and C include the sparse skew parts.
 #[derive(Debug)]
 pub(super) struct Stepper<'a> {
     model: &'a TransientModel<'a>,
@@ -89,6 +91,9 @@ impl<'a> Stepper<'a> {
             if let Some([v, a]) = viscous {
                 let rates = v[rows.clone()].iter().zip(&a[rows]);
                 h.iter_mut().zip(rates).for_each(|(h, (v, a))| *h += dashpot[1] * v + dashpot[2] * a);
+            }
+            if let Some(skew) = &from.skew {
+                skew.add_to(spring.map(|f| -f), [-dashpot[1], -dashpot[2]], first..first + h.len(), h);
             }
         });
         for (k, push) in model.pushes.iter().enumerate() {

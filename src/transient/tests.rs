@@ -1,4 +1,5 @@
 mod held_load;
+mod skew;
 mod sticking;
 
 use super::*;

@@ -112,6 +112,11 @@ impl<T: ComplexField> Lu<T> {
         }
     }
 
+    /// The pivots: the diagonal of U.
+    pub(super) fn pivots(&self) -> impl Iterator<Item = T> + '_ {
+        (0..self.factors.nrows()).map(|i| self.factors[(i, i)].clone())
+    }
+
     fn with_stack(&self, columns: usize, solve: impl FnOnce(&mut MemStack)) {
         let n = self.factors.nrows();
         let scratch = solve::solve_in_place_scratch::<usize, T>(n, columns, Par::Seq)
@@ -125,8 +130,7 @@ impl Lu<c64> {
     /// nothing overflows.
     pub fn phase(&self) -> Option<c64> {
         let mut phase = c64::new(if self.exchanges.is_multiple_of(2) { 1.0 } else { -1.0 }, 0.0);
-        for i in 0..self.factors.nrows() {
-            let pivot = self.factors[(i, i)];
+        for pivot in self.pivots() {
             let size = pivot.norm();
             if !(size > 0.0 && size.is_finite()) {
                 return None;

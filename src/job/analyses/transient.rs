@@ -2,7 +2,7 @@
 
 use super::analysis::{Analysis, Planned, Scope};
 use crate::case::TransientAnalysis;
-use crate::error::{Fault, Faults, Result};
+use crate::error::Result;
 use crate::job::prepared::Prepared;
 use crate::job::run::Run;
 use crate::job::sink::ResultStage;
@@ -26,18 +26,9 @@ pub const TRANSIENT: Analysis = Analysis {
 
 fn plan<'a>(prepared: &'a Prepared<'a>, _: Scope) -> Result<Box<dyn Planned<'a> + 'a>> {
     let wanted = prepared.case.transient.as_ref().ok_or_else(|| TRANSIENT.no_table())?;
-    let mut faults = Faults::new();
-    if prepared.system.skew().is_some() {
-        let found = "matrices whose part that is not symmetric has no low rank, such as gyroscopic terms";
-        let expected = "matrices that are symmetric but for contact with friction, for motion in time";
-        let help = "Remove [transient]; complex modes and frequency responses are there";
-        faults.push(Fault::new("`transient`", found, expected).with_help(help));
-    }
-    let planned = faults.take(places(prepared, wanted)).map(|places| -> Box<dyn Planned<'a> + 'a> {
-        let least = places.least_record(prepared, wanted);
-        Box::new(PlannedTransient { wanted, places, least })
-    });
-    faults.into_result(planned)?.ok_or_else(|| TRANSIENT.no_table())
+    let places = places(prepared, wanted)?;
+    let least = places.least_record(prepared, wanted);
+    Ok(Box::new(PlannedTransient { wanted, places, least }))
 }
 
 struct PlannedTransient<'a> {

@@ -25,6 +25,12 @@ pub trait Field:
     /// |x|, or |Re x| + |Im x|, which is within √2 of it and cheaper.
     fn size(self) -> f64;
 
+    /// |x|.
+    fn modulus(self) -> f64;
+
+    /// The conjugate of x.
+    fn conjugate(self) -> Self;
+
     /// Re x.
     fn real_part(self) -> f64;
 
@@ -60,6 +66,16 @@ impl Field for f64 {
     }
 
     #[inline(always)]
+    fn modulus(self) -> f64 {
+        self.abs()
+    }
+
+    #[inline(always)]
+    fn conjugate(self) -> f64 {
+        self
+    }
+
+    #[inline(always)]
     fn real_part(self) -> f64 {
         self
     }
@@ -77,6 +93,16 @@ impl Field for c64 {
     #[inline(always)]
     fn size(self) -> f64 {
         self.re.abs() + self.im.abs()
+    }
+
+    #[inline(always)]
+    fn modulus(self) -> f64 {
+        self.norm()
+    }
+
+    #[inline(always)]
+    fn conjugate(self) -> c64 {
+        self.conj()
     }
 
     #[inline(always)]

@@ -12,7 +12,7 @@
 //!    what cannot be eliminated yet is passed on to the parent;
 //! 4. `solve` goes up and down the tree with up to sixteen right-hand sides at once.
 //!
-//! `unsymmetric` factorises a complex matrix of a symmetric pattern that is not symmetric, on the same fronts.
+//! `unsymmetric` factorises a matrix of a symmetric pattern that is not symmetric, on the same fronts.
 //!
 //! `engine` lets another library factorise real matrices, over several processes.
 //!

@@ -1,4 +1,4 @@
-//! P S A S Pᵀ = L U of a sparse complex matrix that is not symmetric, on a symmetric pattern.
+//! P S A S Pᵀ = L U of a sparse matrix that is not symmetric, real or complex, on a symmetric pattern.
 //!
 //! The fronts, their tree and its tasks are those of the symmetric factorisation: what the pattern decides is the same. Rows
 //! are exchanged inside the pivot block of a front only (partial pivoting), so that the pattern holds; what this loses
@@ -10,13 +10,14 @@
 
 use super::super::c64;
 use super::super::lu::Lu;
-use super::super::sparse::Index;
+use super::super::sparse::{Index, Scalar};
 use super::symbolic::{Plan, Task};
-use super::{SymbolicFactor, equilibrate, finite};
+use super::{Field, SymbolicFactor, equilibrate, finite};
 use faer::linalg::matmul::matmul;
 use faer::linalg::triangular_solve as triangular;
 use faer::prelude::*;
 use faer::sparse::SparseColMat;
+use faer::traits::math_utils::from_f64;
 use faer::{Accum, Mat, MatMut, MatRef, Par};
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -28,29 +29,28 @@ const ACCEPTED: f64 = 1e-11;
 const REFINED: f64 = 4.0 * f64::EPSILON;
 const REFINEMENTS: usize = 3;
 
-/// A factorised complex matrix.
+/// A factorised matrix A, real (`f64`) or complex (`c64`).
 #[derive(Debug)]
-pub struct UnsymmetricFactor {
+pub struct UnsymmetricFactor<T: Field = c64> {
     plan: Arc<Plan>,
     /// One for each node of the plan.
-    fronts: Vec<Front>,
+    fronts: Vec<Front<T>>,
     /// S.
     scaling: Vec<f64>,
-    matrix: SparseColMat<Index, c64>,
+    matrix: SparseColMat<Index, T>,
     /// The largest sum of |entries| of a row, and of a column.
     norms: [f64; 2],
-    phase: c64,
 }
 
 /// L and U of one front: `width` columns above `below` rows.
 #[derive(Debug)]
-struct Front {
+struct Front<T> {
     /// L11 below the unit diagonal, U11, and the rows that were exchanged.
-    pivots: Lu<c64>,
+    pivots: Lu<T>,
     /// L21, below × width.
-    lower: Mat<c64>,
+    lower: Mat<T>,
     /// U12, width × below.
-    upper: Mat<c64>,
+    upper: Mat<T>,
 }
 
 /// A x = b or Aᴴ x = b.
@@ -63,17 +63,17 @@ pub enum System {
 }
 
 /// Schur complement of a front for its parent, shape (below, below).
-type Remainder = Mat<c64>;
+type Remainder<T> = Mat<T>;
 
 /// A matrix on its way through the tree.
-struct Elimination<'a> {
+struct Elimination<'a, T> {
     plan: &'a Plan,
     /// A and Aᵀ.
-    parts: [&'a SparseColMat<Index, c64>; 2],
+    parts: [&'a SparseColMat<Index, T>; 2],
     scaling: &'a [f64],
 }
 
-impl UnsymmetricFactor {
+impl<T: Field> UnsymmetricFactor<T> {
     /// Factorises A, whose pattern is the symmetric one that was analysed.
     ///
     /// # Errors
@@ -82,7 +82,7 @@ impl UnsymmetricFactor {
     ///
     /// # Panics
     /// When the pattern is another one.
-    pub fn new(symbolic: &SymbolicFactor, matrix: SparseColMat<Index, c64>) -> Result<Self> {
+    pub fn new(symbolic: &SymbolicFactor, matrix: SparseColMat<Index, T>) -> Result<Self> {
         let plan = Arc::clone(&symbolic.plan);
         assert!(symbolic.fits(matrix.symbolic()), "the pattern was not the analysed one");
         finite(&matrix)?;
@@ -95,25 +95,23 @@ impl UnsymmetricFactor {
             )
         })?;
         let elimination = Elimination { plan: &plan, parts: [&matrix, &transposed], scaling: &scaling };
-        let mut fronts: Vec<Option<Front>> = (0..plan.nodes.len()).map(|_| None).collect();
+        let mut fronts: Vec<Option<Front<T>>> = (0..plan.nodes.len()).map(|_| None).collect();
         let (found, _) = elimination.run(&plan.root)?;
         found.into_iter().for_each(|(s, front)| fronts[s] = Some(front));
-        let fronts: Vec<Front> =
+        let fronts: Vec<Front<T>> =
             fronts.into_iter().map(|front| front.expect("every node is eliminated")).collect();
-        let mut phase = c64::new(1.0, 0.0);
-        for front in &fronts {
-            let of_front = front.pivots.phase().ok_or_else(|| singular(&plan, &fronts, front))?;
-            phase *= of_front;
+        let usable = |pivot: T| pivot.modulus() > 0.0 && pivot.modulus().is_finite();
+        if let Some(s) = fronts.iter().position(|front| !front.pivots.pivots().all(usable)) {
+            return Err(singular(&plan, s));
         }
-        let sums = |a: &SparseColMat<Index, c64>| {
-            (0..a.ncols()).map(|j| a.val_of_col(j).iter().map(|v| v.norm()).sum::<f64>()).fold(0.0, f64::max)
+        let sums = |a: &SparseColMat<Index, T>| {
+            let sum = |j: usize| a.val_of_col(j).iter().map(|v| v.modulus()).sum::<f64>();
+            (0..a.ncols()).map(sum).fold(0.0, f64::max)
         };
         let norms = [sums(&transposed), sums(&matrix)];
         drop(transposed);
-        let factor = UnsymmetricFactor { plan, fronts, scaling, matrix, norms, phase: phase / phase.norm() };
-        let probe =
-            |i: usize, j: usize| c64::new(((i + 1) as f64 * (0.7 + j as f64)).sin(), (1.3 * i as f64).cos());
-        let mut probe = Mat::from_fn(factor.n(), 1, probe);
+        let factor = UnsymmetricFactor { plan, fronts, scaling, matrix, norms };
+        let mut probe = Mat::from_fn(factor.n(), 1, |i, _| from_f64(((i + 1) as f64 * 0.7).sin()));
         let error = factor.solve(System::Plain, probe.as_mut());
         if error.is_nan() || error > ACCEPTED {
             return Err(Error::analysis(
@@ -135,22 +133,18 @@ impl UnsymmetricFactor {
         self.matrix.ncols()
     }
 
-    /// det A / |det A|.
-    pub fn phase(&self) -> c64 {
-        self.phase
-    }
-
     /// The bytes that the factors take.
     pub fn memory_bytes(&self) -> usize {
-        let entries = |f: &Front| f.lower.nrows() * f.lower.ncols() * 2 + f.lower.ncols() * f.lower.ncols();
-        self.fronts.iter().map(entries).sum::<usize>() * size_of::<c64>()
+        let entries =
+            |f: &Front<T>| f.lower.nrows() * f.lower.ncols() * 2 + f.lower.ncols() * f.lower.ncols();
+        self.fronts.iter().map(entries).sum::<usize>() * size_of::<T>()
     }
 
     /// Replaces the columns b of `rhs` by A⁻¹b or A⁻ᴴb, refined; gives the largest backward error of a column.
     ///
     /// # Panics
     /// When `rhs` has not n rows.
-    pub fn solve(&self, system: System, mut rhs: MatMut<'_, c64>) -> f64 {
+    pub fn solve(&self, system: System, mut rhs: MatMut<'_, T>) -> f64 {
         let b = rhs.rb().to_owned();
         rhs.copy_from(self.substitute(system, b.as_ref()));
         let mut error = f64::INFINITY;
@@ -171,12 +165,12 @@ impl UnsymmetricFactor {
     fn backward_error(
         &self,
         system: System,
-        b: MatRef<'_, c64>,
-        x: MatRef<'_, c64>,
-        residual: MatRef<'_, c64>,
+        b: MatRef<'_, T>,
+        x: MatRef<'_, T>,
+        residual: MatRef<'_, T>,
     ) -> f64 {
         let norm = self.norms[usize::from(system == System::Adjoint)];
-        let largest = |a: MatRef<'_, c64>, j: usize| a.col(j).iter().map(|v| v.norm()).fold(0.0, f64::max);
+        let largest = |a: MatRef<'_, T>, j: usize| a.col(j).iter().map(|v| v.modulus()).fold(0.0, f64::max);
         let error = |j: usize| {
             let scale = norm * largest(x, j) + largest(b, j);
             if scale == 0.0 { 0.0 } else { largest(residual, j) / scale }
@@ -185,8 +179,8 @@ impl UnsymmetricFactor {
     }
 
     /// A x, or Aᴴ x.
-    fn times(&self, system: System, x: MatRef<'_, c64>) -> Mat<c64> {
-        let mut y = Mat::<c64>::zeros(x.nrows(), x.ncols());
+    fn times(&self, system: System, x: MatRef<'_, T>) -> Mat<T> {
+        let mut y = Mat::<T>::zeros(x.nrows(), x.ncols());
         let a = &self.matrix;
         for c in 0..x.ncols() {
             let (x, mut y) = (x.col(c), y.col_mut(c));
@@ -197,7 +191,9 @@ impl UnsymmetricFactor {
                         let xj = x[j];
                         entries.for_each(|(i, v)| y[i] += *v * xj);
                     }
-                    System::Adjoint => y[j] = entries.map(|(i, v)| v.conj() * x[i]).sum(),
+                    System::Adjoint => {
+                        y[j] = entries.fold(<T as Scalar>::ZERO, |sum, (i, v)| sum + v.conjugate() * x[i]);
+                    }
                 }
             }
         }
@@ -205,10 +201,23 @@ impl UnsymmetricFactor {
     }
 
     /// One substitution through the fronts.
-    fn substitute(&self, system: System, b: MatRef<'_, c64>) -> Mat<c64> {
-        let Plan { order, place, nodes, .. } = &*self.plan;
+    fn substitute(&self, system: System, b: MatRef<'_, T>) -> Mat<T> {
+        let half = self.forward(system, b);
+        self.backward(system, half)
+    }
+
+    /// The first half of a solution, in the order of elimination: L⁻¹PSb, or U⁻ᴴPSb with Aᴴ.
+    ///
+    /// A product of both halves, (U⁻ᴴPSa)ᴴ (L⁻¹PSb) = aᴴA⁻¹b, needs no second half; the half of a sparse vector has entries on its way
+    /// to the root only.
+    ///
+    /// # Panics
+    /// When b has not n rows.
+    pub fn forward(&self, system: System, b: MatRef<'_, T>) -> Mat<T> {
+        let order = &self.plan.order;
+        assert!(b.nrows() == order.len(), "as many rows as A");
         let mut x = Mat::from_fn(b.nrows(), b.ncols(), |k, j| b[(order[k], j)] * self.scaling[order[k]]);
-        for (node, front) in nodes.iter().zip(&self.fronts) {
+        for (node, front) in self.plan.nodes.iter().zip(&self.fronts) {
             let first = node.columns.start;
             let mut own = x.subrows(first, node.columns.len()).to_owned();
             let moved = match system {
@@ -224,9 +233,22 @@ impl UnsymmetricFactor {
                 }
             };
             for j in 0..x.ncols() {
-                node.rows.iter().enumerate().for_each(|(i, row)| x[(*row, j)] -= moved[(i, j)]);
+                for (i, row) in node.rows.iter().enumerate() {
+                    x[(*row, j)] = x[(*row, j)] - moved[(i, j)];
+                }
             }
         }
+        x
+    }
+
+    /// The second half of a solution: SPᵀU⁻¹y, or SPᵀL⁻ᴴy with Aᴴ.
+    ///
+    /// # Panics
+    /// When y has not n rows.
+    pub fn backward(&self, system: System, y: Mat<T>) -> Mat<T> {
+        let Plan { place, nodes, .. } = &*self.plan;
+        assert!(y.nrows() == place.len(), "as many rows as A");
+        let mut x = y;
         for (node, front) in nodes.iter().zip(&self.fronts).rev() {
             let (first, width) = (node.columns.start, node.columns.len());
             let beyond = Mat::from_fn(node.rows.len(), x.ncols(), |i, j| x[(node.rows[i], j)]);
@@ -242,12 +264,21 @@ impl UnsymmetricFactor {
                 }
             }
         }
-        Mat::from_fn(b.nrows(), b.ncols(), |i, j| x[(place[i], j)] * self.scaling[i])
+        Mat::from_fn(x.nrows(), x.ncols(), |i, j| x[(place[i], j)] * self.scaling[i])
     }
 }
 
-fn singular(plan: &Plan, fronts: &[Front], front: &Front) -> Error {
-    let s = fronts.iter().position(|other| std::ptr::eq(other, front)).unwrap_or(0);
+impl UnsymmetricFactor<c64> {
+    /// det A / |det A|.
+    pub fn phase(&self) -> c64 {
+        let of_front = |front: &Front<c64>| front.pivots.phase().expect("no pivot is zero");
+        let phase = self.fronts.iter().map(of_front).fold(c64::new(1.0, 0.0), |all, own| all * own);
+        phase / phase.norm()
+    }
+}
+
+/// Elimination stops in the front `s`.
+fn singular(plan: &Plan, s: usize) -> Error {
     Error::analysis(
         "factorisation",
         format!(
@@ -260,14 +291,14 @@ fn singular(plan: &Plan, fronts: &[Front], front: &Front) -> Error {
 }
 
 /// The fronts of a task with their nodes, and the remainders of its last ones.
-type Eliminated = (Vec<(usize, Front)>, Vec<Remainder>);
+type Eliminated<T> = (Vec<(usize, Front<T>)>, Vec<Remainder<T>>);
 
-impl Elimination<'_> {
+impl<T: Field> Elimination<'_, T> {
     /// Runs a task.
-    fn run(&self, task: &Task) -> Result<Eliminated> {
+    fn run(&self, task: &Task) -> Result<Eliminated<T>> {
         let results: Vec<_> = task.subtasks.par_iter().map(|task| self.run(task)).collect();
         let mut results = task.subtasks.iter().zip(results);
-        let (mut fronts, mut stack) = (Vec::new(), Vec::<(usize, Remainder)>::new());
+        let (mut fronts, mut stack) = (Vec::new(), Vec::<(usize, Remainder<T>)>::new());
         let mut places = vec![0; self.plan.order.len()];
         let mut ready = results.next();
         let mut s = task.nodes.start;
@@ -290,7 +321,12 @@ impl Elimination<'_> {
     }
 
     /// Assembles node s from A and its children, and eliminates its columns.
-    fn front(&self, s: usize, children: &[(usize, Remainder)], places: &mut [usize]) -> (Front, Remainder) {
+    fn front(
+        &self,
+        s: usize,
+        children: &[(usize, Remainder<T>)],
+        places: &mut [usize],
+    ) -> (Front<T>, Remainder<T>) {
         let node = &self.plan.nodes[s];
         let (first, width, below) = (node.columns.start, node.columns.len(), node.rows.len());
         node.columns
@@ -298,7 +334,7 @@ impl Elimination<'_> {
             .chain(node.rows.iter().copied())
             .enumerate()
             .for_each(|(k, row)| places[row] = k);
-        let mut f = Mat::<c64>::zeros(width + below, width + below);
+        let mut f = Mat::<T>::zeros(width + below, width + below);
         for (k, column) in node.columns.clone().enumerate() {
             let j = self.plan.order[column];
             for (which, part) in self.parts.iter().enumerate() {
@@ -330,7 +366,7 @@ impl Elimination<'_> {
             Par::Seq,
         );
         let mut rest = f.submatrix(width, width, below, below).to_owned();
-        matmul(rest.as_mut(), Accum::Add, lower.as_ref(), upper.as_ref(), c64::new(-1.0, 0.0), Par::Seq);
+        matmul(rest.as_mut(), Accum::Add, lower.as_ref(), upper.as_ref(), from_f64(-1.0), Par::Seq);
         (Front { pivots, lower, upper }, rest)
     }
 }
@@ -343,8 +379,8 @@ mod tests {
     use super::*;
     use stridor_base::bounds::{Origin::*, within};
 
-    /// K of a plate, its skew-symmetric part random on the same pattern, at a complex shift.
-    fn rotating(cells: usize, size: f64) -> SparseColMat<Index, c64> {
+    /// K of a plate, its skew-symmetric part random on the same pattern, at a shift.
+    fn rotating<T: Field>(cells: usize, size: f64, shift: T) -> SparseColMat<Index, T> {
         let (k, m) = samples::plate(cells, false);
         let mut skew = add_scaled(&[(0.0, &k)]);
         let mut random = Random::seeded(7);
@@ -355,14 +391,14 @@ mod tests {
             }
         }
         let t = skew.transpose().to_col_major().unwrap();
-        let (one, s) = (c64::new(1.0, 0.0), c64::new(30.0, 2e3));
-        add_scaled(&[(one, &k), (s * s, &m), (one, &skew), (-one, &t)])
+        let one = from_f64::<T>(1.0);
+        add_scaled(&[(one, &k), (shift * shift, &m), (one, &skew), (-one, &t)])
     }
 
     #[test]
     fn solutions_and_the_phase_of_the_determinant_are_those_of_a_dense_solver() {
         for (cells, size) in [(1, 0.1), (4, 0.3), (9, 1.0), (30, 0.1)] {
-            let a = rotating(cells, size);
+            let a = rotating(cells, size, c64::new(30.0, 2e3));
             let n = a.ncols();
             let symbolic = SymbolicFactor::new(a.symbolic()).unwrap();
             let factor = UnsymmetricFactor::new(&symbolic, a.clone()).unwrap();
@@ -385,9 +421,31 @@ mod tests {
         }
     }
 
+    /// The matrix of an implicit time step, M positive and large: aᵀA⁻¹b of halves, and both halves of a solution.
+    #[test]
+    fn halves_of_real_solutions_measure_and_solve() {
+        for (cells, size, shift) in [(1, 0.1, 1e4), (4, 3.0, 2e3), (9, 0.3, 1e4)] {
+            let a = rotating(cells, size, shift);
+            let n = a.ncols();
+            let symbolic = SymbolicFactor::new(a.symbolic()).unwrap();
+            let factor = UnsymmetricFactor::<f64>::new(&symbolic, a.clone()).unwrap();
+            let wave = |phase: f64| Mat::from_fn(n, 2, |i, j| ((i * (j + 1)) as f64 * 0.7 + phase).sin());
+            let (b, left) = (wave(0.1), wave(1.3));
+            let half = factor.forward(System::Plain, b.as_ref());
+            let measured = factor.forward(System::Adjoint, left.as_ref()).transpose() * &half;
+            let x = factor.backward(System::Plain, half);
+            assert!(within((&a * &x - &b).norm_max(), 1e-11 * b.norm_max(), RoundOff), "{n}");
+            let expected = left.transpose() * &x;
+            let scale = left.norm_l2() * x.norm_l2();
+            assert!(within((measured - expected).norm_max(), 1e-11 * scale, RoundOff), "{n}");
+            let y = factor.backward(System::Adjoint, factor.forward(System::Adjoint, b.as_ref()));
+            assert!(within((a.transpose() * &y - &b).norm_max(), 1e-11 * b.norm_max(), RoundOff), "{n}");
+        }
+    }
+
     #[test]
     fn a_singular_matrix_is_refused() {
-        let mut a = rotating(4, 0.1);
+        let mut a = rotating(4, 0.1, c64::new(30.0, 2e3));
         a.val_of_col_mut(5).fill(c64::new(0.0, 0.0));
         let symbolic = SymbolicFactor::new(a.symbolic()).unwrap();
         let error = UnsymmetricFactor::new(&symbolic, a.clone()).unwrap_err().to_string();
