@@ -117,11 +117,6 @@ fn check_transient(root: &mut Report, case: &Case, transient: &TransientAnalysis
         let place = format!("transient.probe.{}", dotted(name));
         root.fault(&place, format!("the name \"{name}\""), "letters, digits, `-` and `_`", "");
     }
-    let plates: Vec<&str> = case.shell.keys().map(String::as_str).collect();
-    let heard = transient.sound.iter().flat_map(|sound| &sound.plates);
-    for name in heard.filter(|name| !plates.contains(&name.as_str())) {
-        unknown_name(root, "transient.sound.plates", name, "shell", &plates);
-    }
 }
 
 /// Contacts that slide and loads that change in time.

@@ -5,7 +5,7 @@ use crate::schema::{Report, declare, dotted, key};
 use std::collections::BTreeMap;
 
 declare! {
-    /// Sound of the vibrating plates.
+    /// Sound of the vibrating plates and flat faces.
     pub struct SoundAnalysis, checked by check {
         /// Microphones other than `axis`, by name.
         pub microphone: BTreeMap<String, Microphone> = key::named(),
@@ -17,8 +17,9 @@ declare! {
             .or_by("1 m where no other microphone is named", microphone.is_empty().then_some(1.0)),
         /// The direction in which it stands; along the plate's normal when absent.
         pub direction: Option<[f64; 3]> = key::direction().optional(),
-        /// The plates that are heard; all when empty.
-        pub plates: Vec<String> = key::names("the names of plates").or(Vec::new()),
+        /// The plates that are heard, or solids by their two flat sides, or regions of flat faces; all plates, and all solids with flat sides,
+        /// when empty.
+        pub plates: Vec<String> = key::names("the names of plates, solids and regions of faces").or(Vec::new()),
         /// Medium of the sound; air of 20 °C at sea level by default.
         pub air: AirChoice = key::table(),
     }

@@ -7,6 +7,8 @@ use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 
 /// Faces whose normal is nearer than this to the axis, by the cosine, are on a flat side of a solid.
 const FLAT: f64 = 1.0 - 1e-6;
+/// Faces are in one plane where their heights differ by less than this part of the size of the solid, √(area of its skin).
+const SAME_PLANE: f64 = 1e-4;
 
 /// The shells that are discs and the solids with a flat side that is one, with their names.
 pub(super) fn discs(model: &Model) -> Vec<(&str, Disc)> {
@@ -27,11 +29,19 @@ fn disc(part: &Part, nodes: &[[f64; 3]]) -> Option<Disc> {
     Disc::recognise(&pieces.iter().map(Vec::as_slice).collect::<Vec<_>>(), nodes)
 }
 
-/// The faces of the skin that look along the axis to which most of it is normal, the eigenvector of Σ A n nᵀ of the largest eigenvalue.
+/// The faces of one flat side of a solid, along the axis to which most of its skin is normal.
 fn flat_side(part: &Part, nodes: &[[f64; 3]]) -> Option<Vec<Cell>> {
+    let [front, _] = flat_sides(part, nodes);
+    Some(front).filter(|side| !side.is_empty())
+}
+
+/// The two flat sides of a solid, seen from outside counter-clockwise: the faces of its skin that look along ±axis, the eigenvector of
+/// Σ A n nᵀ of the largest eigenvalue; of those in several planes the ones in the plane of the largest area.
+pub(super) fn flat_sides(part: &Part, nodes: &[[f64; 3]]) -> [Vec<Cell>; 2] {
     let skin = outer_faces(part.cells.iter());
+    let at = |node: usize| Vector3::from(nodes[node]);
     let area = |face: &Cell| {
-        let at = |k: usize| Vector3::from(nodes[face.corners()[k]]);
+        let at = |k: usize| at(face.corners()[k]);
         (2..face.corners().len())
             .map(|k| 0.5 * (at(k - 1) - at(0)).cross(&(at(k) - at(0))))
             .sum::<Vector3<f64>>()
@@ -40,9 +50,22 @@ fn flat_side(part: &Part, nodes: &[[f64; 3]]) -> Option<Vec<Cell>> {
     let tensor = areas.iter().filter(|a| a.norm() > 0.0).map(|a| a * a.transpose() / a.norm());
     let SymmetricEigen { eigenvalues, eigenvectors } = SymmetricEigen::new(tensor.sum::<Matrix3<f64>>());
     let axis = eigenvectors.column(eigenvalues.imax()).into_owned();
-    let flat = |(face, area): (Cell, Vector3<f64>)| (area.dot(&axis) > FLAT * area.norm()).then_some(face);
-    let side: Vec<Cell> = skin.into_iter().zip(areas).filter_map(flat).collect();
-    (!side.is_empty()).then_some(side)
+    let axis = axis * axis[axis.iamax()].signum();
+    let whole: f64 = areas.iter().map(|area| area.norm()).sum();
+    [axis, -axis].map(|axis| {
+        // (height along the axis, area, face), in planes whose heights differ by less than `SAME_PLANE` of the size.
+        let looks = |(face, area): (&Cell, &Vector3<f64>)| {
+            let height =
+                face.corners().iter().map(|k| at(*k).dot(&axis)).sum::<f64>() / face.corners().len() as f64;
+            (area.dot(&axis) > FLAT * area.norm()).then(|| (height, area.norm(), face.clone()))
+        };
+        let mut faces: Vec<(f64, f64, Cell)> = skin.iter().zip(&areas).filter_map(looks).collect();
+        faces.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let planes = faces.chunk_by(|a, b| b.0 - a.0 <= SAME_PLANE * whole.sqrt());
+        let area = |plane: &[(f64, f64, Cell)]| plane.iter().map(|face| face.1).sum::<f64>();
+        let largest = planes.max_by(|a, b| area(a).total_cmp(&area(b)));
+        largest.unwrap_or_default().iter().map(|face| face.2.clone()).collect()
+    })
 }
 
 #[cfg(test)]

@@ -12,7 +12,7 @@
 //!   waves are as fast as sound a free plate is quieter, so that the figures are an upper estimate there;
 //! * nothing is reflected or shaded: no floor, no room, no other part of the rig;
 //! * air neither loads nor damps the plates, and the sound of one does not move another;
-//! * bars and edges are silent.
+//! * bars and edges are silent; of solids flat faces are heard, each on its outer side only.
 //!
 //! Plates move in modes, so that everything is linear in the modal accelerations q̈: [`Receiver`] gives the pressure at
 //! a point, step by step, [`Radiation`] the resistance that gives the power of [`CrossSpectra`]. [`a_weighting`] and

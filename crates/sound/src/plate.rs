@@ -9,6 +9,8 @@ pub struct Plate {
     pub name: String,
     /// Unit normal n; the front is where it points to.
     pub normal: [f64; 3],
+    /// Whether its back sends out sound, too, as that of a thin plate does; that of a face of a solid does not.
+    pub both_sides: bool,
     /// A point of its plane \[m\].
     pub middle: [f64; 3],
     /// Where the pistons are \[m\].
@@ -18,11 +20,11 @@ pub struct Plate {
 }
 
 impl Plate {
-    /// +1 in front of the plate, −1 behind it, 0 in its plane.
+    /// +1 in front of the plate, −1 behind it where its back is heard, 0 in its plane and where nothing is heard.
     pub fn side(&self, place: [f64; 3]) -> f64 {
         let ahead: f64 = (0..3).map(|k| self.normal[k] * (place[k] - self.middle[k])).sum();
         let away: f64 = (0..3).map(|k| (place[k] - self.middle[k]).powi(2)).sum::<f64>().sqrt();
-        if ahead.abs() <= 1e-9 * away { 0.0 } else { ahead.signum() }
+        if ahead.abs() <= 1e-9 * away || ahead < 0.0 && !self.both_sides { 0.0 } else { ahead.signum() }
     }
 
     /// Coordinates of the pistons in the plane, from its middle \[m\].
@@ -63,7 +65,14 @@ pub(super) mod samples {
         }
         let strength =
             Mat::from_fn(points.len(), shapes.len(), |i, m| areas[i] * shapes[m](polar[i].0, polar[i].1));
-        Plate { name: "disc".into(), normal: [0.0, 0.0, 1.0], middle: [0.0; 3], points, strength }
+        Plate {
+            name: "disc".into(),
+            normal: [0.0, 0.0, 1.0],
+            both_sides: true,
+            middle: [0.0; 3],
+            points,
+            strength,
+        }
     }
 
     #[test]
@@ -72,6 +81,8 @@ pub(super) mod samples {
         let area: f64 = (0..plate.points.len()).map(|i| plate.strength[(i, 0)]).sum();
         assert!(within((area / (PI * 0.01) - 1.0).abs(), 1e-12, RoundOff));
         assert_eq!([1.0, -2.0, 0.0].map(|z| plate.side([0.3, 0.0, z])), [1.0, -1.0, 0.0]);
+        let face = Plate { both_sides: false, ..plate.clone() };
+        assert_eq!([1.0, -2.0, 0.0].map(|z| face.side([0.3, 0.0, z])), [1.0, 0.0, 0.0]);
         let tilted = Plate { normal: [0.6, 0.0, 0.8], ..plate };
         let along = tilted.in_plane();
         assert!(along.iter().zip(&tilted.points).all(|(p, x)| within(

@@ -1,4 +1,4 @@
-//! The power that a plate sends out.
+//! The power that a plate, or a face of a solid, sends out.
 
 use super::{Air, Plate};
 use faer::Mat;
@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 use stridor_linalg::dense::product;
 use stridor_linalg::multivector::{expand, gram};
 
-/// How the modes of a plate radiate together, over both its sides.
+/// How the modes of a plate radiate together, over both its sides, or over the front where its back is not heard: half of that.
 ///
 /// Far away, in the direction (ϑ, ψ) from the normal, p = ρ₀/(2πr) Σ_m q̈_m Â_m(κ) with the wavevector κ = k sin ϑ
 /// (cos ψ, sin ψ) in the plane and Â_m(κ) = Σ_i s_im e^{iκ·x_i}. The power W = ∮ p̄²/(ρ₀c) r² dΩ over the half-spaces in
@@ -24,6 +24,7 @@ pub struct Radiation {
     /// k_max².
     top: f64,
     modes: usize,
+    sides: f64,
     /// R at the Chebyshev points: entries m ≥ n row by row, one column a point.
     forms: Mat<f64>,
 }
@@ -62,10 +63,11 @@ impl Radiation {
                 parts.iter().enumerate().for_each(|(l, part)| integral[(l, j)] += weight * part);
             }
         }
-        Radiation { top, modes, forms: product(sampled.as_ref(), integral.as_ref()) }
+        let sides = if plate.both_sides { 2.0 } else { 1.0 };
+        Radiation { top, modes, sides, forms: product(sampled.as_ref(), integral.as_ref()) }
     }
 
-    /// Contribution of each mode m to the power of both sides at the wavenumber `k`, ρ₀/(πc) Σ_n S_mn R_mn \[W\], for the mean
+    /// Contribution of each mode m to the power of its sides at the wavenumber `k`, ρ₀/(πc) Σ_n S_mn R_mn \[W\], for the mean
     /// products S_mn \[m²/s⁴ in modal units\] of the modal accelerations: entries m ≥ n row by row. The sum over the modes
     /// is W; it is negative for a mode that absorbs power radiated by others.
     ///
@@ -75,7 +77,7 @@ impl Radiation {
         assert_eq!(products.len(), self.forms.nrows(), "an entry for each pair of modes");
         let parts = lagrange((k * k / self.top).min(1.0), self.forms.ncols());
         let resistance = expand(self.forms.as_ref(), Mat::from_fn(parts.len(), 1, |j, _| parts[j]).as_ref());
-        let factor = air.density / (PI * air.speed);
+        let factor = 0.5 * self.sides * air.density / (PI * air.speed);
         let mut power = vec![0.0; self.modes];
         for (((m, n), r), s) in entries(self.modes).zip(resistance.col_as_slice(0)).zip(products) {
             power[m] += factor * r * s;
@@ -205,8 +207,14 @@ mod tests {
         }
         let cell = (side / cells as f64).powi(2);
         let strength = Mat::from_fn(points.len(), 2, |i, m| cell * values[i][m]);
-        let plate =
-            Plate { name: "square".into(), normal: [0.0, 0.0, 1.0], middle: [0.0; 3], points, strength };
+        let plate = Plate {
+            name: "square".into(),
+            normal: [0.0, 0.0, 1.0],
+            both_sides: true,
+            middle: [0.0; 3],
+            points,
+            strength,
+        };
         let radiation = Radiation::new(&plate, 60.0);
         let efficiency = |k: f64, products: [f64; 3]| {
             let omega = k * air.speed;

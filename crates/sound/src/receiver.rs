@@ -140,6 +140,7 @@ mod tests {
         let point = Plate {
             name: "point".into(),
             normal: [0.0, 0.0, 1.0],
+            both_sides: true,
             middle: [0.0; 3],
             points: vec![[0.0; 3]],
             strength: Mat::from_fn(1, 1, |_, _| 2e-4),

@@ -17,8 +17,10 @@ type ReduceMotion<'a> = dyn Fn(&[(usize, usize, f64)]) -> SparseVector + 'a;
 pub struct Surface {
     /// Its name.
     pub name: String,
-    /// Unit normal n; the front is where its largest component is positive.
+    /// Unit normal n; the front of a plate is where its largest component is positive, that of a face of a solid outside.
     pub normal: [f64; 3],
+    /// [`Plate::both_sides`].
+    both_sides: bool,
     /// Its centroid \[m\].
     pub middle: [f64; 3],
     /// A \[m²\].
@@ -32,18 +34,19 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// Of `faces` with three or four nodes each; `None` when they are not flat, or have no area.
-    pub fn new<'f>(
+    /// Of `faces` with three or four nodes each, on a plate heard on `both_sides`, or seen from outside counter-clockwise; `None` when they
+    /// are not flat, or have no area.
+    pub fn new(
         name: &str,
         nodes: &[[f64; 3]],
-        faces: impl IntoIterator<Item = &'f [usize]>,
+        (faces, both_sides): (impl IntoIterator<Item = Vec<usize>>, bool),
         reduce: &ReduceMotion<'_>,
     ) -> Option<Surface> {
         let at = |node: usize| Vector3::from(nodes[node]);
         let areas = vector_areas(nodes, faces);
         let whole: Vector3<f64> = areas.values().sum();
         let area = whole.norm();
-        let turn = whole[whole.iamax()].signum();
+        let turn = if both_sides { whole[whole.iamax()].signum() } else { 1.0 };
         let normal = whole * (turn / area);
         let share = |a: &Vector3<f64>| turn * a.dot(&normal);
         let middle: Vector3<f64> = areas.iter().map(|(node, a)| at(*node) * (share(a) / area)).sum();
@@ -57,6 +60,7 @@ impl Surface {
         (flat && area > 0.0).then(|| Surface {
             name: name.to_string(),
             normal: normal.into(),
+            both_sides,
             middle: middle.into(),
             area,
             largest: areas.values().map(share).fold(0.0, f64::max),
@@ -85,6 +89,7 @@ impl Surface {
         Plate {
             name: self.name.clone(),
             normal: self.normal,
+            both_sides: self.both_sides,
             middle: self.middle,
             points: self.points.clone(),
             strength,
@@ -93,9 +98,9 @@ impl Surface {
 }
 
 /// The vector area of each node \[m²\]: a third of that of its triangles.
-fn vector_areas<'f>(
+fn vector_areas(
     nodes: &[[f64; 3]],
-    faces: impl IntoIterator<Item = &'f [usize]>,
+    faces: impl IntoIterator<Item = Vec<usize>>,
 ) -> BTreeMap<usize, Vector3<f64>> {
     let mut areas = BTreeMap::<usize, Vector3<f64>>::new();
     let at = |node: usize| Vector3::from(nodes[node]);
@@ -106,7 +111,7 @@ fn vector_areas<'f>(
         }
     };
     for face in faces {
-        match *face {
+        match face[..] {
             [a, b, c] => add([a, b, c], 1.0),
             [a, b, c, d] => {
                 [[a, b, c], [a, c, d], [a, b, d], [b, c, d]].into_iter().for_each(|t| add(t, 0.5));
@@ -126,11 +131,11 @@ mod tests {
     fn pistons_share_the_area_and_a_bent_plate_is_none() {
         let mut nodes =
             vec![[0.0, 0.0, 1.0], [2.0, 0.0, 1.0], [2.0, 1.0, 1.0], [0.0, 1.0, 1.0], [3.0, 0.0, 1.0]];
-        let faces: [&[usize]; 2] = [&[0, 3, 2, 1], &[1, 2, 4]];
+        let faces = || [vec![0, 3, 2, 1], vec![1, 2, 4]];
         let reduce = |terms: &[(usize, usize, f64)]| {
             SparseVector::from_entries(terms.iter().map(|(node, axis, v)| (3 * node + axis, *v)))
         };
-        let surface = Surface::new("p", &nodes, faces, &reduce).unwrap();
+        let surface = Surface::new("p", &nodes, (faces(), true), &reduce).unwrap();
         // The front is up though the faces look down: the volume of a rise of one millimetre is the area times that.
         assert!(surface.normal == [0.0, 0.0, 1.0] && within((surface.area - 2.5).abs(), 1e-14, RoundOff));
         let rise = Mat::from_fn(15, 1, |i, _| if i % 3 == 2 { 1e-3 } else { 0.0 });
@@ -146,7 +151,13 @@ mod tests {
         );
         assert!(surface.touches([2.0, 0.5, 1.1]) && !surface.touches([2.0, 0.5, 3.0]));
         assert_eq!((surface.side([0.0, 0.0, 2.0]), surface.side([0.0, 0.0, 0.0])), (1.0, -1.0));
+        // A face of a solid looks where its nodes turn, and is heard there only.
+        let face = Surface::new("p", &nodes, (faces(), false), &reduce).unwrap();
+        assert_eq!(face.normal, [0.0, 0.0, -1.0]);
+        assert_eq!((face.side([0.0, 0.0, 2.0]), face.side([0.0, 0.0, 0.0])), (0.0, 1.0));
+        let volume: f64 = face.moving(&rise).strength.col_as_slice(0).iter().sum();
+        assert!(within((volume + 2.5e-3).abs(), 1e-17, RoundOff));
         nodes[4][2] = 1.1;
-        assert!(Surface::new("p", &nodes, faces, &reduce).is_none());
+        assert!(Surface::new("p", &nodes, (faces(), true), &reduce).is_none());
     }
 }

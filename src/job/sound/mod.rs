@@ -1,4 +1,4 @@
-//! The plates of a case that radiate, and its microphones, checked before anything is computed.
+//! The plates and faces of a case that radiate, and its microphones, checked before anything is computed.
 
 mod acoustics;
 #[cfg(test)]

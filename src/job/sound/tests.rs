@@ -139,3 +139,62 @@ fn levels_are_those_of_the_loud_half() {
         "{levels:?} {windows:?}"
     );
 }
+
+/// A thin disc of solids and a plate of the same size that move alike sound alike, on the axis and beside it, before and behind: two faces
+/// heard on one side each are one plate that is heard on both. All kinds of faces.
+#[test]
+fn faces_of_a_solid_sound_as_a_plate_does() {
+    use crate::mesh::generate::{structured_annulus, structured_ring};
+    use crate::mesh::{CellKind, write};
+    let dir = tempfile::tempdir().unwrap();
+    // A saddle with two nodal diameters and some volume, u_z = r² cos 2φ + 3 r².
+    let motion = |x: &[f64; 3]| 4.0 * x[0] * x[0] + 2.0 * x[1] * x[1];
+    let power_and_pressures = |case: &Case| {
+        let prepared = Prepared::new(case).unwrap();
+        let places = [("before", [0.3, 0.1, 0.4]), ("behind", [0.1, 0.2, -0.5])];
+        let acoustics = acoustics(&prepared, &wanted(Some(1.0), &places)).unwrap();
+        let nodes = &prepared.model.nodes;
+        let mut shape = faer::Mat::zeros(prepared.system.n_dofs(), 1);
+        for (node, x) in nodes.iter().enumerate() {
+            for (free, factor) in prepared.assembled.dofs.terms(node, 2) {
+                shape[(*free, 0)] = motion(x) / factor;
+            }
+        }
+        let (step, steps, hz) = (2e-5, 8_000, 900.0);
+        let mut accumulator = SoundAccumulator::new(acoustics, (&shape, hz), (step, steps));
+        for first in (0..=steps).step_by(BLOCK) {
+            let moments = first..(first + BLOCK).min(steps + 1);
+            accumulator.add(vec![moments.map(|k| (TAU * hz * step * k as f64).sin()).collect()]);
+        }
+        let sound = accumulator.finish();
+        let levels = sound.microphones.iter().map(|m| m.levels()[0]);
+        std::iter::once(sound.power_levels()[0]).chain(levels).collect::<Vec<f64>>()
+    };
+    let materials = "[material.steel]\nyoungs_modulus = 2e11\npoissons_ratio = 0.3\ndensity = 7800\n";
+    let case = |part: &str, file: &str| {
+        let text =
+            format!("[mesh]\nfile = \"{file}\"\nunit = \"m\"\n{materials}{part}[modes.all]\ncount = 1\n");
+        Case::parse("case.toml", &text, dir.path().into()).unwrap()
+    };
+    let mut mesh = structured_annulus(0.03, 0.08, 8, 64).unwrap();
+    // About the z axis, as the ring.
+    mesh.nodes.iter_mut().for_each(|x| x.rotate_left(1));
+    write(&dir.path().join("plate.msh"), &mesh, 1.0).unwrap();
+    let name = &mesh.regions[0].name;
+    let plate = power_and_pressures(&case(
+        &format!("[shell.{name}]\nmaterial = \"steel\"\nthickness = 1e-3\n"),
+        "plate.msh",
+    ));
+    for kind in CellKind::all().filter(|kind| kind.dimension() == 3) {
+        let mesh = structured_ring(kind, [0.03, 0.08], 1e-3, [8, 64, 1]).unwrap();
+        let Some(solid) = mesh.regions.iter().find(|region| region.dimension == 3) else { panic!("a solid") };
+        let part = format!("[solid.{}]\nmaterial = \"steel\"\nallow_locking = true\n", solid.name);
+        write(&dir.path().join("ring.msh"), &mesh, 1.0).unwrap();
+        let ring = power_and_pressures(&case(&part, "ring.msh"));
+        for (a, b) in plate.iter().zip(&ring) {
+            // The rings of both are polygons of 64 sides, with or without middles: their areas differ by 0.16 % (0.014 dB); the microphones
+            // are half a millimetre nearer to the faces.
+            assert!(within((a - b).abs(), 0.2, Discretisation), "{kind:?}: {plate:?} {ring:?}");
+        }
+    }
+}

@@ -61,7 +61,7 @@ pub(super) fn picture(results: &RunResults) -> Option<Picture> {
         _ => format!("; pressure at the microphones {}", names.join(", ")),
     };
     let caption = format!(
-        "Sound from {} to {} s, level of each line of {} Hz: power of all plates, both sides{at}. Each plate as if in an infinite rigid baffle.",
+        "Sound from {} to {} s, level of each line of {} Hz: power of all plates, both sides, and faces of solids{at}. Each as if in an infinite rigid baffle.",
         given(sound.window[0]),
         given(sound.window[1]),
         significant(sound.resolution_hz, 3)
