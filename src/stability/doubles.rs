@@ -198,3 +198,47 @@ fn neat_numbers_hit_no_shift() {
         }
     }
 }
+
+/// Critically damped and critically driven oscillators, coupled by a random rotation, beside others: of a double real eigenvalue, which
+/// rounding parts into a pair off the real axis, at least one is there, whatever side of the axis the last step leaves it on.
+#[test]
+fn a_double_real_eigenvalue_is_there_whatever_side_of_the_axis_rounding_leaves_it_on() {
+    let mut random = Random::seeded(72);
+    for trial in 0..1000 {
+        let n = 2 + trial % 3;
+        let rate = 10f64.powf(random.between(-1.0, 4.0));
+        let mut rotation = Mat::<f64>::identity(n, n);
+        for k in 1..n {
+            let (sin, cos) = random.between(-3.0, 3.0).sin_cos();
+            let turn = Mat::from_fn(n, n, |i, j| match (i == 0 || i == k, j == 0 || j == k) {
+                (true, true) if i == j => cos,
+                (true, true) => {
+                    if i < j {
+                        -sin
+                    } else {
+                        sin
+                    }
+                }
+                _ => f64::from(i == j),
+            });
+            rotation = rotation * turn;
+        }
+        // (λ − rate)² = 0 of the first, λ² + c λ + k = 0 of the others.
+        let own: Vec<[f64; 2]> = (0..n)
+            .map(|i| match i {
+                0 => [-2.0 * rate, rate * rate],
+                _ => [random.between(-1.0, 1.0) * rate, random.between(-1.0, 2.0) * rate * rate],
+            })
+            .collect();
+        let of = |k: usize| {
+            let diagonal = Mat::from_fn(n, n, |i, j| if i == j { own[i][k] } else { 0.0 });
+            let turned = &rotation * diagonal * rotation.transpose();
+            Mat::from_fn(n, n, |i, j| 0.5 * (turned[(i, j)] + turned[(j, i)]))
+        };
+        let found = modes(&system(&Mat::identity(n, n), &of(0), &of(1)), [0.0, 2.0 * rate / TAU]);
+        let off =
+            found.modes.iter().map(|mode| (mode.eigenvalue - rate).norm()).fold(f64::INFINITY, f64::min);
+        // √(10 ε) of the sizes in it.
+        assert!(within(off, 1e-5 * rate, RoundOff), "{trial}: {off:e} {own:?} {:?}", found.modes);
+    }
+}

@@ -98,13 +98,15 @@ pub(super) fn solve(
     };
     let mut pairs = Vectors { lambda, right, left };
     quadratic.separate(&mut pairs);
-    Ok(polished(&quadratic, &companion, pairs))
+    Ok(polished(&quadratic, &companion, pairs, &wanted))
 }
 
 /// Factors of s at which the projected problem is linearised, one after the other.
 const MOVED: [f64; 4] = [1.0, 0.881_966, 1.234_568, 0.618_034];
-/// |θ| = s/|λ − s| of an eigenvalue that is too near to the shift.
-const NEXT_TO_SHIFT: f64 = 1e6;
+/// |θ| = s/|λ − s| of an eigenvalue that is too near to the shift, and the size of the companion matrix, θ² of a double one. Only
+/// eigenvalues that diverge as fast as the band's modes turn are so near.
+const NEXT_TO_SHIFT: f64 = 100.0;
+const LARGE: f64 = 1e6;
 
 /// The matrices of a projected problem.
 struct Projection<'a> {
@@ -132,9 +134,9 @@ impl Projection<'_> {
         for s in MOVED.map(|factor| factor * s) {
             let Some((lu, companion)) = self.companion(s) else { continue };
             let (theta, v) = self.pairs_of(&companion)?;
-            let clear = theta.iter().all(|theta| theta.norm() < NEXT_TO_SHIFT);
+            let near = theta.iter().any(|theta| theta.norm() > NEXT_TO_SHIFT) || companion.norm_max() > LARGE;
             last = Some(Linearised { s, lu, companion, theta, v });
-            if clear {
+            if !near {
                 break;
             }
         }
@@ -409,8 +411,14 @@ impl Companion {
 }
 
 /// One Newton step for all pairs, which takes back what the linearisation lost: y − Q(λ)⁻¹Q(λ)y with the inverse that the
-/// companion matrix gives but for the pole at λ, and λ − zᴴQ(λ)y / zᴴQ′(λ)y. It is kept where it brings both residuals down.
-fn polished(quadratic: &Quadratic, companion: &Companion, pairs: Vectors) -> Vec<SmallPair> {
+/// companion matrix gives but for the pole at λ, and λ − zᴴQ(λ)y / zᴴQ′(λ)y. It is kept where it brings both residuals down, and λ is
+/// `wanted` still: of a double real eigenvalue, zᴴQ′(λ)y ≈ 0, it may lead to the conjugate, which nobody looks for.
+fn polished(
+    quadratic: &Quadratic,
+    companion: &Companion,
+    pairs: Vectors,
+    wanted: &impl Fn(c64) -> bool,
+) -> Vec<SmallPair> {
     let [right, left] = quadratic.values(&pairs);
     let size = |[right, left]: [&Mat<c64>; 2], j: usize| right.col(j).norm_l2().max(left.col(j).norm_l2());
     let before: Vec<f64> = (0..pairs.lambda.len()).map(|j| size([&right, &left], j)).collect();
@@ -423,7 +431,7 @@ fn polished(quadratic: &Quadratic, companion: &Companion, pairs: Vectors) -> Vec
     let after = quadratic.values(&next);
     let slopes = [&pairs, &next].map(|pairs| quadratic.slopes(pairs));
     let pair = |j: usize| {
-        let better = usize::from(size(after.each_ref(), j) < before[j]);
+        let better = usize::from(size(after.each_ref(), j) < before[j] && wanted(next.lambda[j]));
         let (vectors, slopes) = ([&pairs, &next][better], &slopes[better]);
         let list = |x: &Mat<c64>| x.col(j).iter().copied().collect();
         SmallPair {
