@@ -234,7 +234,7 @@ impl<T: Field> UnsymmetricFactor<T> {
             };
             for j in 0..x.ncols() {
                 for (i, row) in node.rows.iter().enumerate() {
-                    x[(*row, j)] = x[(*row, j)] - moved[(i, j)];
+                    x[(*row, j)] += -moved[(i, j)];
                 }
             }
         }
