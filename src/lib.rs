@@ -19,6 +19,7 @@
 //! | [`structure`] | elements, constraints, assembly |
 //! | [`contact`] | pairing of two bodies, normal and friction laws |
 //! | [`equilibrium`] | steady sliding and its linearisation |
+//! | [`dynamics`] | the operator Q(λ) about steady sliding: products, solutions, harmonic responses |
 //! | [`modal`] | real modes, their names, their certificate |
 //! | [`reduction`] | reduced models that keep the motion at the contacts |
 //! | [`stability`] | complex eigenvalues at steady sliding |
@@ -49,6 +50,7 @@ pub mod case;
 #[cfg(feature = "cli")]
 pub mod cli;
 pub mod contact;
+pub mod dynamics;
 pub mod equilibrium;
 pub mod job;
 pub mod modal;

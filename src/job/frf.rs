@@ -6,6 +6,7 @@ use super::modes::{
 use super::motion::{Motion, motion};
 use super::prepared::Prepared;
 use crate::case::{Case, FrfAnalysis, FrfContact, FrfSolution, UniversalForm};
+use crate::dynamics::{DAMPERS, Harmonic, is_unbounded};
 use crate::equilibrium::{SteadySliding, closed_structure};
 use crate::error::{Error, Faults, Result};
 use crate::linalg::{SparseMatrix, SparseVector, c64};
@@ -13,7 +14,6 @@ use crate::modal::{ModesWanted, RealModes, compute};
 use crate::progress::Observer;
 use crate::reduction::{DampingOfModes, MODES, Receptance, Reduced};
 use crate::results::{FrfResponse, FrfResult, PlaceAndDirection, Resonance};
-use crate::stability::{DAMPERS, Harmonic, is_unbounded};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 

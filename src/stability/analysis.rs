@@ -2,14 +2,13 @@
 
 use super::band::{Band, in_band};
 use super::basis::Basis;
-use super::block::Block;
 use super::closed::{ClosedContact, share_out};
-use super::operator::Operator;
 use super::post_processing::post_processed;
 use super::projected::{SmallPair, project_interface, solve};
 use super::refinement::{Corrections, MeasuredPairs, PairMeasurement, TOGETHER};
 use super::responses::{add_coupled_responses, few_responses};
 use super::{ComplexMode, ComplexModes, Structural, accuracy_warnings};
+use crate::dynamics::{Block, Operator};
 use crate::equilibrium::SteadySliding;
 use crate::error::{Error, Fault, Result};
 use crate::linalg::SymmetricFactor;

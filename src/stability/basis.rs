@@ -1,8 +1,6 @@
 //! The subspace that the quadratic problem is projected on, grown by what the full order asks for.
 
-use super::block::Block;
-use super::damper::Between;
-use super::operator::Operator;
+use crate::dynamics::{Between, Block, Operator};
 use crate::linalg::SparseMatrix;
 use crate::linalg::dense::{product, symmetric_eigen};
 use crate::linalg::multivector::{Columns, append, combine, expand, gram, panels};

@@ -1,8 +1,7 @@
 //! Where the growth of a mode comes from, and which real modes take part in it.
 
 use super::GrowthBudget;
-use super::interface::TermOrigin;
-use super::operator::{Forms, Operator};
+use crate::dynamics::{Forms, Operator, TermOrigin};
 use crate::linalg::c64;
 
 impl GrowthBudget {

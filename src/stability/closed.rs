@@ -6,10 +6,9 @@
 //! directions are more than the real modes, the spring of every point is added to K, real modes and factors are those of
 //! the closed structure, and what is left of the interface is friction and damping.
 
-use super::block::Block;
-use super::interface::Interface;
 use super::post_processing::shares;
 use super::{ComplexMode, Structural};
+use crate::dynamics::{Block, Interface};
 use crate::equilibrium::{SteadySliding, closed_structure};
 use crate::error::Result;
 use crate::linalg::multivector::gram;

@@ -7,8 +7,8 @@
 use super::analysis::{analyse, check};
 use super::band::Band;
 use super::general::{General, general_modes};
-use super::operator::Operator;
 use super::{ComplexModes, Structural};
+use crate::dynamics::Operator;
 use crate::equilibrium::SteadySliding;
 use crate::error::Result;
 use crate::modal::RealModes;

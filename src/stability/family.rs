@@ -3,15 +3,12 @@
 use super::analysis::{FIRST_TOLERANCE, shifted_factor};
 use super::band::in_band;
 use super::basis::Basis;
-use super::block::Block;
 use super::closed::ClosedContact;
 use super::compact::{LARGE, Snapshots, near_band};
-use super::damper::{Between, Damper};
-use super::interface::{Interface, InterfaceTerm, terms_of_every_point};
-use super::operator::Operator;
 use super::reduced::{FamilyMatrices, Projection, ReducedModes};
 use super::refinement::{Corrections, MeasuredPairs, PairMeasurement, TOGETHER};
 use super::responses::{add_coupled_responses, interface_responses};
+use crate::dynamics::{Between, Block, Damper, Interface, InterfaceTerm, Operator, terms_of_every_point};
 use crate::equilibrium::{PointState, tangent_stiffness};
 use crate::error::Result;
 use crate::linalg::c64;

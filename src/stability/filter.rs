@@ -1,8 +1,7 @@
 //! How much of one complex mode a motion holds.
 
 use super::ComplexMode;
-use super::block::Block;
-use super::operator::{Operator, Side};
+use crate::dynamics::{Block, Operator, Side};
 use crate::equilibrium::SteadySliding;
 use crate::error::{Error, Fault, Result};
 use crate::linalg::c64;

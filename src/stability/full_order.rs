@@ -1,9 +1,8 @@
 //! A second way to the same eigenvalues: two-level Arnoldi on the full order, which knows no real modes and no basis.
 
 use super::band::Band;
-use super::operator::Operator;
-use super::shifted::Shifted;
 use super::{ComplexMode, ComplexModes};
+use crate::dynamics::{Operator, Shifted};
 use crate::equilibrium::SteadySliding;
 use crate::error::Result;
 use crate::linalg::factor::{QuadraticProblem, QuadraticSolver};

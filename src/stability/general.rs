@@ -7,14 +7,12 @@
 //! Rayleigh quotient λ − ψᴴQ(λ)φ / ψᴴQ′(λ)φ has an error quadratic in those of the vectors.
 
 use super::band::{Band, diverges, in_band};
-use super::block::Block;
 use super::budget::growth_budget;
 use super::certificate::Definiteness;
-use super::operator::{Operator, Side};
 use super::post_processing::shares;
 use super::refinement::TOGETHER;
-use super::shifted::{Adjoint, Shifted};
 use super::{CONTACT_ROUNDING, ComplexMode, ComplexModes, ROUNDING, accuracy_warnings};
+use crate::dynamics::{Adjoint, Block, Operator, Shifted, Side};
 use crate::error::{Error, Result};
 use crate::linalg::c64;
 use crate::linalg::factor::SymbolicFactor;

@@ -9,8 +9,7 @@
 //! enters only by what φ and ψ have of them; a few block Krylov steps on those parts give Ritz vectors that represent
 //! them, and nothing else of the spectrum is needed.
 
-use super::block::Block;
-use super::operator::Operator;
+use crate::dynamics::{Block, Operator};
 use crate::error::Result;
 use crate::linalg::dense::symmetric_eigen;
 use crate::linalg::multivector::{beside, expand, gram};

@@ -1,10 +1,9 @@
 //! The modes as they are given: right vectors sharpened by the last corrections, and their errors.
 
 use super::ComplexMode;
-use super::block::Block;
 use super::budget::growth_budget;
-use super::operator::Operator;
 use super::refinement::MeasuredPairs;
+use crate::dynamics::{Block, Operator};
 use crate::linalg::c64;
 use rayon::prelude::*;
 

@@ -2,7 +2,7 @@
 
 use super::ROUNDING;
 use super::basis::Basis;
-use super::operator::Operator;
+use crate::dynamics::Operator;
 use crate::error::{Error, Result};
 use crate::linalg::c64;
 use crate::linalg::dense::{cholesky, product, symmetric_eigen};

@@ -1,6 +1,6 @@
 //! A reduced model that serves a whole family of sliding states: between them a few numbers differ.
 
-use super::interface::InterfaceTerm;
+use crate::dynamics::InterfaceTerm;
 use crate::error::Result;
 use crate::linalg::c64;
 use crate::linalg::dense::{definite_pencil, product};

@@ -1,10 +1,9 @@
 //! Pairs measured on the full order: residuals, errors, and the corrections that make them better.
 
 use super::basis::Basis;
-use super::block::Block;
-use super::operator::{Forms, Operator, Side};
 use super::responses::SKETCH;
 use super::{CONTACT_ROUNDING, NEAR_ZERO, ROUNDING};
+use crate::dynamics::{Block, Forms, Operator, Side};
 use crate::linalg::SymmetricFactor;
 use crate::linalg::c64;
 use crate::linalg::multivector::{append, combine, expand};
@@ -100,7 +99,7 @@ impl PairMeasurement<'_> {
         pairs.zero = vec![None; lambda.len()];
         let small = |j: &usize| {
             let size = lambda[*j].norm();
-            size <= SLOW * top || size <= top && operator.may_be_zero(lambda[*j], right.norm(*j).powi(2))
+            size <= SLOW * top || size <= top && may_be_zero(operator, lambda[*j], right.norm(*j).powi(2))
         };
         if columns.clone().any(|j| small(&j)) {
             let value = residual.map(|residual| basis.columns().gram(residual));
@@ -229,6 +228,11 @@ impl Corrections {
 /// Random factors of `rows` vectors in [`SKETCH`] combinations.
 fn mixing(rows: usize, random: &mut Random) -> Mat<f64> {
     Mat::from_fn(rows, SKETCH, |_, _| random.next())
+}
+
+/// Whether |λ| may be zero but for rounding, of a vector with ‖φ‖² = `square`: a bound, which costs nothing.
+fn may_be_zero(operator: &Operator<'_>, lambda: c64, square: f64) -> bool {
+    lambda.norm_sqr() <= NEAR_ZERO * ROUNDING * operator.stiffness_size() * square
 }
 
 #[cfg(test)]

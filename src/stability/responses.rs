@@ -1,8 +1,7 @@
 //! Responses of the structure to interface and damping: the first directions besides the real modes.
 
 use super::basis::Basis;
-use super::block::Block;
-use super::operator::{Operator, Side};
+use crate::dynamics::{Block, Operator, Side};
 use crate::linalg::SymmetricFactor;
 use crate::linalg::c64;
 use crate::linalg::multivector::{Columns, combine, expand, gram};

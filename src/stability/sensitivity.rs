@@ -6,10 +6,8 @@
 
 use super::ComplexMode;
 use super::analysis::shifted_factor;
-use super::block::Block;
-use super::interface::Interface;
 use super::modal_damping::ModalChange;
-use super::operator::{Operator, Side};
+use crate::dynamics::{Block, Interface, Operator, Side};
 use crate::equilibrium::{Nearby, SteadySliding, tangent_stiffness};
 use crate::error::{Error, Fault, Result};
 use crate::linalg::multivector::gram;

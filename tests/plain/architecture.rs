@@ -5,16 +5,17 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// Each module with all modules that it may use.
-const MAY_USE: [(&str, &[&str]); 18] = [
+const MAY_USE: [(&str, &[&str]); 19] = [
     ("system", &[]),
     // Mechanics: builds a system, knows no analysis.
     ("structure", &["system"]),
     ("contact", &["system", "structure"]),
     // Analyses: take a system, know no part of the mechanics.
     ("equilibrium", &["system"]),
+    ("dynamics", &["system", "equilibrium"]),
     ("modal", &["system"]),
     ("reduction", &["system", "equilibrium", "modal"]),
-    ("stability", &["system", "equilibrium", "modal"]),
+    ("stability", &["system", "equilibrium", "dynamics", "modal"]),
     ("sweep", &["stability"]),
     ("uncertainty", &[]),
     ("transient", &["system", "equilibrium"]),
@@ -43,6 +44,7 @@ const MAY_USE: [(&str, &[&str]); 18] = [
             "structure",
             "contact",
             "equilibrium",
+            "dynamics",
             "modal",
             "stability",
             "sweep",

@@ -14,6 +14,7 @@
 //! Both are inertia counts. With the matrices of the structure any R beyond the largest growth rate will do that is large enough
 //! by the norms of the rest in coordinates of unit mass; multiples of the band's top are tried.
 
+use crate::dynamics::{InterfaceTerm, Operator};
 use crate::error::Result;
 use crate::linalg::SparseMatrix;
 use crate::linalg::dense::{product, symmetric_eigen};
@@ -21,8 +22,6 @@ use crate::linalg::factor::SymmetricFactor;
 use crate::linalg::factor::inertia_like;
 use crate::linalg::random::Random;
 use crate::linalg::sparse::{add_scaled, diagonal, dot, entry, norm_1, times};
-use crate::stability::interface::InterfaceTerm;
-use crate::stability::operator::Operator;
 use faer::{Mat, MatRef};
 
 /// R is sought among the band's top times 1, 4, …, 4 to this power.

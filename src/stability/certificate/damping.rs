@@ -1,11 +1,11 @@
 //! The damping of a structure beyond what is proportional to M and K.
 
 use super::rows::ColumnBlock;
+use crate::dynamics::{Damper, DamperPart, modal_times};
 use crate::linalg::multivector::{beside, expand, gram};
 use crate::linalg::row_sparse::RowSparse;
 use crate::linalg::sparse::times;
 use crate::stability::analysis::CompletedAnalysis;
-use crate::stability::damper::{Damper, DamperPart, modal_times};
 use faer::Mat;
 
 /// Damping of a structure that is not proportional.

@@ -7,13 +7,12 @@
 
 use super::count::{Certificate, close_calls, found, slowest_growth};
 use super::region::CountedRegion;
+use crate::dynamics::{Operator, Shifted};
 use crate::error::{Error, Result};
 use crate::linalg::c64;
 use crate::numbers::hertz;
 use crate::stability::ComplexModes;
 use crate::stability::general::General;
-use crate::stability::operator::Operator;
-use crate::stability::shifted::Shifted;
 use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 

@@ -45,7 +45,7 @@ use super::Structural;
 use super::analysis::{CompletedAnalysis, analyse};
 use super::band::Band;
 use super::complex::modes_with_skew_parts;
-use super::operator::Operator;
+use crate::dynamics::Operator;
 use crate::equilibrium::SteadySliding;
 use crate::error::{Error, Result};
 use crate::numbers::{hertz, significant};

@@ -3,11 +3,11 @@
 use super::reduced::{Oscillator, ReducedModel};
 use super::region::CountedRegion;
 use super::remainder::Remainder;
+use crate::dynamics::InterfaceTerm;
 use crate::error::{Error, Result};
 use crate::linalg::c64;
 use crate::linalg::dense::{product, symmetric_eigen};
 use crate::linalg::lu::inverse_and_phase;
-use crate::stability::interface::InterfaceTerm;
 use faer::Mat;
 
 /// Q_B(s) = diag(p) + V κ(s) Vᵀ with κ = k + s c: det Q_B = Π p · d, d(s) = det(I + H κ), H = Vᵀ diag(1/p) V.

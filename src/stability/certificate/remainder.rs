@@ -20,6 +20,7 @@
 
 use super::damping::DampingParts;
 use super::rows::ColumnBlock;
+use crate::dynamics::{Damper, DamperPart};
 use crate::error::Result;
 use crate::linalg::dense::{product, symmetric_eigen};
 use crate::linalg::factor::{SymmetricFactor, compliances, inertia_like};
@@ -28,7 +29,6 @@ use crate::linalg::random::Random;
 use crate::linalg::sparse::{add_scaled, dot, multiply, times};
 use crate::linalg::{SparseMatrix, c64};
 use crate::stability::analysis::CompletedAnalysis;
-use crate::stability::damper::{Damper, DamperPart};
 use faer::{Accum, Mat, MatRef};
 use std::f64::consts::TAU;
 use std::sync::Arc;

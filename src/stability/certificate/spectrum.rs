@@ -24,12 +24,12 @@ use super::contour::{Stopped, Winding};
 use super::reduced::ReducedModel;
 use super::region::CountedRegion;
 use super::remainder::Remainder;
+use crate::dynamics::InterfaceTerm;
 use crate::error::{Error, Result};
 use crate::linalg::c64;
 use crate::linalg::dense::product;
 use crate::linalg::lu::inverse_and_phase;
 use crate::linalg::unsymmetric::{complex_spectrum, spectrum};
-use crate::stability::interface::InterfaceTerm;
 use faer::Mat;
 
 /// Floating-point operations for a basis of `m` vectors and `r` directions of contact: about 60 (2m)³ for the vectors, their inverse

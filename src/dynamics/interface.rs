@@ -7,26 +7,31 @@ use std::collections::BTreeMap;
 
 /// The linearised contacts, and what imported matrices have beyond their symmetric part, as one low-rank interface.
 #[derive(Debug, Clone)]
-pub(crate) struct Interface<'a> {
+pub struct Interface<'a> {
     /// The columns of W (n × r): g, t₁, t₂ of every contact point that is not silent, then the imported ones.
-    pub(crate) directions: Vec<&'a SparseVector>,
+    pub directions: Vec<&'a SparseVector>,
     /// The entries of k and c that are not both zero.
-    pub(crate) terms: Vec<InterfaceTerm>,
+    pub terms: Vec<InterfaceTerm>,
 }
 
 /// One entry of k \[N/m\] and c \[N s/m\].
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct InterfaceTerm {
-    pub(crate) row: usize,
-    pub(crate) column: usize,
-    pub(crate) stiffness: f64,
-    pub(crate) damping: f64,
-    pub(crate) origin: TermOrigin,
+pub struct InterfaceTerm {
+    /// The direction that the force is along.
+    pub row: usize,
+    /// The direction whose motion it answers.
+    pub column: usize,
+    /// Of k \[N/m\].
+    pub stiffness: f64,
+    /// Of c \[N s/m\].
+    pub damping: f64,
+    /// What it comes from.
+    pub origin: TermOrigin,
 }
 
 /// Origin of an entry, by which the growth budget sorts it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum TermOrigin {
+pub enum TermOrigin {
     /// (g, g): stiffness and damping of the normal motion.
     Normal,
     /// (t₁, t₁): friction that falls, or rises, with the slip velocity.
@@ -39,7 +44,7 @@ pub(crate) enum TermOrigin {
 
 impl<'a> Interface<'a> {
     /// The interface of `system` at steady sliding.
-    pub(crate) fn new(system: &'a System, steady: &SteadySliding) -> Self {
+    pub fn new(system: &'a System, steady: &SteadySliding) -> Self {
         let points: Vec<_> = system.points().map(|(_, point)| point).collect();
         let mut interface = Interface { directions: Vec::new(), terms: Vec::new() };
         for block in linearize(system, steady).blocks {
@@ -111,7 +116,7 @@ impl<'a> Interface<'a> {
     }
 
     /// Wᵀ x.
-    pub(crate) fn motions(&self, [re, im]: [&[f64]; 2]) -> Vec<c64> {
+    pub fn motions(&self, [re, im]: [&[f64]; 2]) -> Vec<c64> {
         self.directions.iter().map(|d| c64::new(d.dot(re), d.dot(im))).collect()
     }
 }

@@ -16,7 +16,7 @@ use faer::{Mat, MatRef};
 ///
 /// P⁻¹ r = y − Y (I + G FᵀY)⁻¹ G Fᵀ y with y = P_s⁻¹ r and Y = P_s⁻¹ F (Sherman, Morrison & Woodbury), and with the adjoints
 /// of P_s and G for P⁻ᴴ r.
-pub(super) struct Shifted<'a> {
+pub struct Shifted<'a> {
     operator: &'a Operator<'a>,
     shift: c64,
     factors: FactorKind,
@@ -59,14 +59,16 @@ impl FactorKind {
 }
 
 impl<'a> Shifted<'a> {
-    /// For solutions with P alone.
-    /// Fails at an eigenvalue.
-    pub(super) fn new(operator: &'a Operator<'a>, shift: c64) -> Result<Self> {
+    /// Factorises P = Q(σ) at the shift σ, for solutions with P alone.
+    ///
+    /// # Errors
+    /// A singular sparse part P_s, as at an eigenvalue of it.
+    pub fn new(operator: &'a Operator<'a>, shift: c64) -> Result<Self> {
         Shifted::with_pattern(operator, shift, None)
     }
 
     /// [`Shifted::new`] with the analysis of the pattern, where it is known.
-    pub(super) fn with_pattern(
+    pub(crate) fn with_pattern(
         operator: &'a Operator<'a>,
         shift: c64,
         known: Option<&SymbolicFactor>,
@@ -102,18 +104,18 @@ impl<'a> Shifted<'a> {
     }
 
     /// Makes solutions with Pᴴ possible.
-    pub(super) fn two_sided(mut self) -> Self {
+    pub(crate) fn two_sided(mut self) -> Self {
         self.left = Some(self.woodbury(Side::Left));
         self
     }
 
     /// σ.
-    pub(super) fn shift(&self) -> c64 {
+    pub fn shift(&self) -> c64 {
         self.shift
     }
 
     /// The analysis of the pattern of P_s, where P_s is not symmetric.
-    pub(super) fn symbolic(&self) -> Option<SymbolicFactor> {
+    pub(crate) fn symbolic(&self) -> Option<SymbolicFactor> {
         match &self.factors {
             FactorKind::Symmetric(_) => None,
             FactorKind::Unsymmetric(factor) => Some(factor.symbolic()),
@@ -121,7 +123,7 @@ impl<'a> Shifted<'a> {
     }
 
     /// det P / |det P|; `None` where P_s is symmetric, or P is singular.
-    pub(super) fn phase(&self) -> Option<c64> {
+    pub(crate) fn phase(&self) -> Option<c64> {
         match &self.factors {
             FactorKind::Symmetric(_) => None,
             FactorKind::Unsymmetric(factor) => Some(factor.phase() * self.right.lu.phase()?),
@@ -180,8 +182,11 @@ impl<'a> Shifted<'a> {
         moved
     }
 
-    /// P⁻¹ r.
-    pub(super) fn invert(&self, r: Mat<c64>) -> Mat<c64> {
+    /// P⁻¹ r of every column r: for σ = iω the amplitudes u of the motion under the forces Re(r e^{iωt}). Not refined; see [`Harmonic`] for
+    /// responses next to resonances.
+    ///
+    /// [`Harmonic`]: super::Harmonic
+    pub fn invert(&self, r: Mat<c64>) -> Mat<c64> {
         self.solve_with(Side::Right, &self.right, r)
     }
 
@@ -263,7 +268,7 @@ impl ShiftedQuadratic for Shifted<'_> {
 }
 
 /// The problem of the left vectors, Q(μ̄)ᴴ ψ = 0 with μ = λ̄, at the shift σ̄.
-pub(super) struct Adjoint<'s, 'a>(pub(super) &'s Shifted<'a>);
+pub(crate) struct Adjoint<'s, 'a>(pub(crate) &'s Shifted<'a>);
 
 impl ShiftedQuadratic for Adjoint<'_, '_> {
     fn n(&self) -> usize {

@@ -1,9 +1,8 @@
-//! The full-order quadratic operator Q(λ) = λ² M + λ (C + C_c) + K + K_σ + iH + K_c, applied without forming it.
+//! The operator Q(λ), applied without forming it.
 
 use super::block::Block;
 use super::damper::{Between, Damper, DamperPart, modal_times};
 use super::interface::{Interface, InterfaceTerm};
-use super::{NEAR_ZERO, ROUNDING};
 use crate::equilibrium::{SteadySliding, tangent_stiffness};
 use crate::error::Result;
 use crate::linalg::multivector::Columns;
@@ -17,19 +16,24 @@ use rayon::prelude::*;
 use std::borrow::Cow;
 use std::sync::Arc;
 
-/// Q(λ) of a system at steady sliding. What is not symmetric acts through the interface.
-pub(super) struct Operator<'a> {
-    pub(super) mass: &'a SparseMatrix,
+/// The quadratic operator of a system of n degrees of freedom about steady sliding,
+///
+/// Q(λ) = λ² M + λ (C + G + C_c) + K + K_σ + N + iH + K_c,
+///
+/// with the structure's M, C, K and loss factors H, the geometric stiffness K_σ of the preload, the sparse skew parts G (gyroscopic) and N
+/// (circulatory), and the linearised contacts K_c = W k Wᵀ, C_c = W c Wᵀ. Products cost one pass over the sparse matrices.
+pub struct Operator<'a> {
+    pub(crate) mass: &'a SparseMatrix,
     /// K + K_σ.
-    pub(super) stiffness: Cow<'a, SparseMatrix>,
-    pub(super) damping: &'a Damping,
+    pub(crate) stiffness: Cow<'a, SparseMatrix>,
+    pub(crate) damping: &'a Damping,
     /// Where the matrices are factorised.
-    pub(super) engine: &'a Engine,
-    pub(super) interface: Interface<'a>,
+    pub(crate) engine: &'a Engine,
+    pub(crate) interface: Interface<'a>,
     /// The sparse skew parts of K and C.
-    pub(super) skew: Option<&'a Skew>,
+    pub(crate) skew: Option<&'a Skew>,
     /// The damping of the structure and others that may take part, taken apart.
-    pub(super) dampers: Arc<Vec<Damper<'a>>>,
+    pub(crate) dampers: Arc<Vec<Damper<'a>>>,
     /// How much of each acts.
     weights: Vec<f64>,
     /// M, K + K_σ, and what is wide of C and H.
@@ -43,21 +47,21 @@ pub(super) struct Operator<'a> {
 
 /// Bilinear forms of the matrices of the structure with two vectors: yᴴMx, yᴴ(K + K_σ)x, yᴴCx with modal damping, yᴴHx.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Forms {
-    pub(super) mass: c64,
-    pub(super) stiffness: c64,
-    pub(super) damping: c64,
-    pub(super) loss: c64,
+pub(crate) struct Forms {
+    pub(crate) mass: c64,
+    pub(crate) stiffness: c64,
+    pub(crate) damping: c64,
+    pub(crate) loss: c64,
 }
 
 /// m M + k (K + K_σ) + c (C + C_c) + h H + w K_c.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Sum {
-    pub(super) mass: c64,
-    pub(super) stiffness: c64,
-    pub(super) damping: c64,
-    pub(super) loss: c64,
-    pub(super) contact: c64,
+pub(crate) struct Sum {
+    pub(crate) mass: c64,
+    pub(crate) stiffness: c64,
+    pub(crate) damping: c64,
+    pub(crate) loss: c64,
+    pub(crate) contact: c64,
 }
 
 /// Dissipative matrix: C or H.
@@ -97,20 +101,20 @@ const ZERO: c64 = c64::new(0.0, 0.0);
 
 impl Sum {
     /// Q(λ), or for the left side what Q(λ)ᴴ is made of.
-    pub(super) fn value(side: Side, lambda: c64) -> Self {
+    pub(crate) fn value(side: Side, lambda: c64) -> Self {
         let s = side.of(lambda);
         Sum { mass: s * s, stiffness: ONE, damping: s, loss: side.of(c64::new(0.0, 1.0)), contact: ONE }
     }
 
     /// Q′(λ) = 2λM + C + C_c, or for the left side what Q′(λ)ᴴ is made of.
-    pub(super) fn slope(side: Side, lambda: c64) -> Self {
+    pub(crate) fn slope(side: Side, lambda: c64) -> Self {
         Sum { mass: side.of(lambda) * 2.0, damping: ONE, ..Sum::default() }
     }
 }
 
 impl Forms {
     /// (y + z)ᴴX(y + z) of every matrix, given yᴴXy, yᴴXz and zᴴXz: all matrices are real and symmetric.
-    pub(super) fn of_sum(own: Forms, mixed: Forms, other: Forms) -> Self {
+    pub(crate) fn of_sum(own: Forms, mixed: Forms, other: Forms) -> Self {
         let sum = |pick: fn(&Forms) -> c64| pick(&own) + 2.0 * pick(&mixed).re + pick(&other);
         Forms {
             mass: sum(|f| f.mass),
@@ -121,7 +125,7 @@ impl Forms {
     }
 
     /// Those of the vectors scaled by the root of `factor` each.
-    pub(super) fn scaled(&self, factor: f64) -> Self {
+    pub(crate) fn scaled(&self, factor: f64) -> Self {
         let Forms { mass, stiffness, damping, loss } = *self;
         Forms {
             mass: mass * factor,
@@ -134,7 +138,7 @@ impl Forms {
 
 /// Which vectors an operator acts on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Side {
+pub enum Side {
     /// Q(λ) φ.
     Right,
     /// Q(λ)ᴴ ψ.
@@ -152,13 +156,17 @@ impl Side {
 type SkewPart<'a> = (&'a SparseMatrix, fn(&Sum) -> c64);
 
 impl<'a> Operator<'a> {
-    pub(super) fn new(system: &'a System, steady: &SteadySliding) -> Result<Self> {
+    /// That of `system` about its steady state.
+    ///
+    /// # Errors
+    /// A geometric stiffness that cannot be worked out.
+    pub fn new(system: &'a System, steady: &SteadySliding) -> Result<Self> {
         let stiffness = tangent_stiffness(system, &steady.displacement)?;
         Ok(Operator::with_interface(system, stiffness, Interface::new(system, steady), &[]))
     }
 
     /// The operator with the tangent stiffness `stiffness`, another interface, and `further` dampings, none of which acts.
-    pub(super) fn with_interface(
+    pub(crate) fn with_interface(
         system: &'a System,
         stiffness: Cow<'a, SparseMatrix>,
         interface: Interface<'a>,
@@ -196,7 +204,7 @@ impl<'a> Operator<'a> {
 
     /// The same operator whose interface has other terms between the same directions, with `weights` for its dampings:
     /// those that are missing are one for the first and none for the others.
-    pub(super) fn with_terms(&self, terms: Vec<InterfaceTerm>, weights: &[f64]) -> Operator<'_> {
+    pub(crate) fn with_terms(&self, terms: Vec<InterfaceTerm>, weights: &[f64]) -> Operator<'_> {
         let interface = Interface { directions: self.interface.directions.clone(), terms };
         let mut all = only_first(self.dampers.len());
         all.iter_mut().zip(weights).for_each(|(all, weight)| *all = *weight);
@@ -205,7 +213,8 @@ impl<'a> Operator<'a> {
         Operator { stiffness, interface, shared, dampers, weights: all, contact_norms, ..*self }
     }
 
-    pub(super) fn n(&self) -> usize {
+    /// The number of degrees of freedom.
+    pub fn n(&self) -> usize {
         self.mass.nrows()
     }
 
@@ -216,7 +225,7 @@ impl<'a> Operator<'a> {
 
     /// BᵀMY, BᵀKY, BᵀCY and BᵀHY of the structure's own damping, modal damping included; `images` is memory for the next
     /// call.
-    pub(super) fn forms(
+    pub(crate) fn forms(
         &self,
         b: Columns<'_>,
         y: MatRef<'_, f64>,
@@ -231,7 +240,7 @@ impl<'a> Operator<'a> {
     }
 
     /// BᵀXY of the sparse skew parts X of K and C; none where there are none.
-    pub(super) fn skew_between(&self, b: Columns<'_>, y: MatRef<'_, f64>) -> Vec<Mat<f64>> {
+    pub(crate) fn skew_between(&self, b: Columns<'_>, y: MatRef<'_, f64>) -> Vec<Mat<f64>> {
         // A product with a matrix stored by columns is that with its transpose.
         let between = |(matrix, _): SkewPart<'_>| -> Mat<f64> { -b.gram(times(matrix, y).as_ref()) };
         self.skew_parts().map(between).collect()
@@ -239,7 +248,7 @@ impl<'a> Operator<'a> {
 
     /// yⱼ += sumⱼ xⱼ for the right side, and for the left with C_c and K_c transposed. Gives what the matrices are between
     /// each of `tests` and x, pair by pair.
-    pub(super) fn add_products(
+    pub(crate) fn add_products(
         &self,
         side: Side,
         sums: &[Sum],
@@ -364,7 +373,7 @@ impl<'a> Operator<'a> {
     }
 
     /// xⱼᴴK_k xⱼ / i and xⱼᴴC_k xⱼ / i of the sparse skew parts, which are real.
-    pub(super) fn skew_forms(&self, x: &Block) -> Vec<[f64; 2]> {
+    pub(crate) fn skew_forms(&self, x: &Block) -> Vec<[f64; 2]> {
         let mut forms = vec![[0.0; 2]; x.ncols()];
         for (which, (matrix, _)) in self.skew_parts().enumerate() {
             let image = x.map(|x| times(matrix, x));
@@ -375,7 +384,7 @@ impl<'a> Operator<'a> {
 
     /// Coupling of the real modes, (sⱼ (C_r + C_c) + iH_r + K_c) xⱼ, where C_r and H_r are C and H but for what is
     /// proportional in them; for the left side iH is conjugated, C_c and K_c are transposed.
-    pub(super) fn coupling(&self, side: Side, s: &[c64], x: &Block) -> Block {
+    pub(crate) fn coupling(&self, side: Side, s: &[c64], x: &Block) -> Block {
         let sum = |s: &c64| Sum { mass: ZERO, stiffness: ZERO, ..Sum::value(side, *s) };
         let sums: Vec<Sum> = s.iter().map(sum).collect();
         let mut y = Block::zeros(self.n(), s.len());
@@ -383,8 +392,11 @@ impl<'a> Operator<'a> {
         y
     }
 
-    /// Q(λⱼ) xⱼ, or Q(λⱼ)ᴴ xⱼ.
-    pub(super) fn value(&self, side: Side, lambda: &[c64], x: &Block) -> Block {
+    /// Q(λⱼ) xⱼ, or Q(λⱼ)ᴴ xⱼ, of every column j.
+    ///
+    /// # Panics
+    /// When x has not n rows and a column for each λ.
+    pub fn value(&self, side: Side, lambda: &[c64], x: &Block) -> Block {
         let sums: Vec<Sum> = lambda.iter().map(|s| Sum::value(side, *s)).collect();
         let mut value = Block::zeros(self.n(), x.ncols());
         self.add_products(side, &sums, x, &mut value, &[]);
@@ -392,7 +404,7 @@ impl<'a> Operator<'a> {
     }
 
     /// y += Q(λⱼ) xⱼ, and what the matrices are between each of `tests` and x.
-    pub(super) fn add_value(
+    pub(crate) fn add_value(
         &self,
         lambda: &[c64],
         x: &Block,
@@ -403,8 +415,11 @@ impl<'a> Operator<'a> {
         self.add_products(Side::Right, &sums, x, y, tests)
     }
 
-    /// Q′(λⱼ) xⱼ = (2λⱼM + C + C_c) xⱼ, or Q′(λⱼ)ᴴ xⱼ.
-    pub(super) fn slope(&self, side: Side, lambda: &[c64], x: &Block) -> Block {
+    /// Q′(λⱼ) xⱼ = (2λⱼM + C + G + C_c) xⱼ, or Q′(λⱼ)ᴴ xⱼ.
+    ///
+    /// # Panics
+    /// As [`Operator::value`].
+    pub fn slope(&self, side: Side, lambda: &[c64], x: &Block) -> Block {
         let sums: Vec<Sum> = lambda.iter().map(|s| Sum::slope(side, *s)).collect();
         let mut slope = Block::zeros(self.n(), x.ncols());
         self.add_products(side, &sums, x, &mut slope, &[]);
@@ -412,24 +427,25 @@ impl<'a> Operator<'a> {
     }
 
     /// ψⱼᴴQ′(λⱼ)φⱼ.
-    pub(super) fn steepness(&self, lambda: &[c64], left: &Block, right: &Block) -> Vec<c64> {
+    pub(crate) fn steepness(&self, lambda: &[c64], left: &Block, right: &Block) -> Vec<c64> {
         let slope = self.slope(Side::Right, lambda, right);
         (0..lambda.len()).into_par_iter().map(|j| left.dot(j, &slope)).collect()
     }
 
-    /// |λ|²‖M‖ + |λ|(‖C‖ + ‖C_c‖) + ‖K‖ + ‖K_c‖ in the 1-norm; modal damping left out.
-    pub(super) fn size(&self, lambda: c64) -> f64 {
+    /// |λ|²‖M‖ + |λ|(‖C‖ + ‖C_c‖) + ‖K‖ + ‖K_c‖ in the 1-norm, skew parts included and modal damping left out: what ‖Q(λ)φ‖/‖φ‖ is
+    /// measured by, as the backward error η.
+    pub fn size(&self, lambda: c64) -> f64 {
         let (r, [contact, contact_damping]) = (lambda.norm(), self.contact_norms);
         r * r * self.mass_norm + r * (self.damping_norm + contact_damping) + self.stiffness_norm + contact
     }
 
-    /// Whether |λ| may be zero but for rounding, of a vector with ‖φ‖² = `square`: a bound, which costs nothing.
-    pub(super) fn may_be_zero(&self, lambda: c64, square: f64) -> bool {
-        lambda.norm_sqr() <= NEAR_ZERO * ROUNDING * (self.stiffness_norm + self.contact_norms[0]) * square
+    /// ‖K‖ + ‖K_c‖ in the 1-norm.
+    pub(crate) fn stiffness_size(&self) -> f64 {
+        self.stiffness_norm + self.contact_norms[0]
     }
 
     /// |φ|ᵀ|K + K_σ||φ|: the strain energy without cancellation.
-    pub(super) fn gross_stiffness(&self, [re, im]: [&[f64]; 2]) -> f64 {
+    pub(crate) fn gross_stiffness(&self, [re, im]: [&[f64]; 2]) -> f64 {
         let size: Vec<f64> = re.iter().zip(im).map(|(re, im)| re.hypot(*im)).collect();
         let column = |j: usize| {
             let entries = self.stiffness.row_idx_of_col(j).zip(self.stiffness.val_of_col(j));

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 /// Complex vectors, one a column.
 #[derive(Debug, Clone)]
-pub(super) struct Block {
+pub struct Block {
     /// Re of every vector, then Im of every one.
     parts: Mat<f64>,
 }
@@ -19,17 +19,19 @@ impl Default for Block {
 }
 
 impl Block {
-    pub(super) fn zeros(n: usize, columns: usize) -> Self {
+    /// Vectors of n zeros.
+    pub fn zeros(n: usize, columns: usize) -> Self {
         Block::of_parts(Mat::zeros(n, 2 * columns))
     }
 
     /// Of the real parts of all vectors and then the imaginary ones.
-    pub(super) fn of_parts(parts: Mat<f64>) -> Self {
+    pub(crate) fn of_parts(parts: Mat<f64>) -> Self {
         assert!(parts.ncols().is_multiple_of(2), "as many imaginary as real parts");
         Block { parts }
     }
 
-    pub(super) fn from_fn(n: usize, columns: usize, f: impl Fn(usize, usize) -> c64) -> Self {
+    /// Vectors whose entries i, j are f(i, j).
+    pub fn from_fn(n: usize, columns: usize, f: impl Fn(usize, usize) -> c64) -> Self {
         let mut block = Block::zeros(n, columns);
         for j in 0..columns {
             let [re, im] = block.vector_mut(j);
@@ -41,12 +43,16 @@ impl Block {
         block
     }
 
-    pub(super) fn from_columns(n: usize, columns: &[&[c64]]) -> Self {
+    /// Vectors of n entries each.
+    ///
+    /// # Panics
+    /// When one has fewer.
+    pub fn from_columns(n: usize, columns: &[&[c64]]) -> Self {
         Block::from_fn(n, columns.len(), |i, j| columns[j][i])
     }
 
     /// Some columns of another block.
-    pub(super) fn gathered(block: &Block, columns: &[usize]) -> Self {
+    pub(crate) fn gathered(block: &Block, columns: &[usize]) -> Self {
         let mut some = Block::zeros(block.nrows(), columns.len());
         for (k, j) in columns.iter().enumerate() {
             some.vector_mut(k)
@@ -58,57 +64,59 @@ impl Block {
     }
 
     /// Resizes to `columns` vectors, whose entries are not cleared.
-    pub(super) fn resize(&mut self, n: usize, columns: usize) {
+    pub(crate) fn resize(&mut self, n: usize, columns: usize) {
         self.parts.resize_with(n, 2 * columns, |_, _| 0.0);
     }
 
-    pub(super) fn nrows(&self) -> usize {
+    /// The length of every vector.
+    pub fn nrows(&self) -> usize {
         self.parts.nrows()
     }
 
-    pub(super) fn ncols(&self) -> usize {
+    /// The number of vectors.
+    pub fn ncols(&self) -> usize {
         self.parts.ncols() / 2
     }
 
     /// Re of every vector, then Im of every one.
-    pub(super) fn parts(&self) -> MatRef<'_, f64> {
+    pub(crate) fn parts(&self) -> MatRef<'_, f64> {
         self.parts.as_ref()
     }
 
-    pub(super) fn parts_mut(&mut self) -> MatMut<'_, f64> {
+    pub(crate) fn parts_mut(&mut self) -> MatMut<'_, f64> {
         self.parts.as_mut()
     }
 
-    pub(super) fn into_parts(self) -> Mat<f64> {
+    pub(crate) fn into_parts(self) -> Mat<f64> {
         self.parts
     }
 
     /// Entry i of vector j.
-    pub(super) fn get(&self, i: usize, j: usize) -> c64 {
+    pub fn get(&self, i: usize, j: usize) -> c64 {
         c64::new(self.parts[(i, j)], self.parts[(i, self.ncols() + j)])
     }
 
     /// Re and Im of vector j.
-    pub(super) fn vector(&self, j: usize) -> [&[f64]; 2] {
+    pub fn vector(&self, j: usize) -> [&[f64]; 2] {
         [j, self.ncols() + j].map(|c| self.parts.col_as_slice(c))
     }
 
     /// Re and Im of vector j, to be written.
-    pub(super) fn vector_mut(&mut self, j: usize) -> [&mut [f64]; 2] {
+    pub(crate) fn vector_mut(&mut self, j: usize) -> [&mut [f64]; 2] {
         let columns = self.ncols();
         let (re, im) = self.parts.as_mut().split_at_col_mut(columns);
         [re, im].map(|part| whole(part.col_mut(j)))
     }
 
     /// Image of every vector by a real operation.
-    pub(super) fn map(&self, f: impl FnOnce(MatRef<'_, f64>) -> Mat<f64>) -> Self {
+    pub(crate) fn map(&self, f: impl FnOnce(MatRef<'_, f64>) -> Mat<f64>) -> Self {
         let parts = f(self.parts());
         assert!(parts.ncols() == self.parts.ncols(), "one column for each");
         Block { parts }
     }
 
     /// self\[:, j\] = factor · x\[:, j\], in the memory at hand.
-    pub(super) fn set_scaled(&mut self, factor: f64, x: &Block) {
+    pub(crate) fn set_scaled(&mut self, factor: f64, x: &Block) {
         self.resize(x.nrows(), x.ncols());
         self.each_vector(|j, parts| {
             for (own, x) in parts.into_iter().zip(x.vector(j)) {
@@ -118,7 +126,7 @@ impl Block {
     }
 
     /// self\[:, j\] += factor\[j\] · x\[:, j\].
-    pub(super) fn add_scaled(&mut self, factor: &[c64], x: &Block) {
+    pub(crate) fn add_scaled(&mut self, factor: &[c64], x: &Block) {
         self.each_vector(|j, [u, v]| {
             let ([p, q], a) = (x.vector(j), factor[j]);
             for (((u, v), p), q) in u.iter_mut().zip(v).zip(p).zip(q) {
@@ -129,7 +137,7 @@ impl Block {
     }
 
     /// self\[rows, j\] += factor\[j\] · x\[:, j\].
-    pub(super) fn add_rows(&mut self, factor: &[c64], rows: &[usize], x: &Block) {
+    pub(crate) fn add_rows(&mut self, factor: &[c64], rows: &[usize], x: &Block) {
         for (j, factor) in factor.iter().enumerate() {
             let [re, im] = self.vector_mut(j);
             for (k, i) in rows.iter().enumerate() {
@@ -140,7 +148,7 @@ impl Block {
     }
 
     /// self\[:, j\] *= factor\[j\].
-    pub(super) fn scale(&mut self, factor: &[f64]) {
+    pub(crate) fn scale(&mut self, factor: &[f64]) {
         self.each_vector(|j, parts| parts.into_iter().flatten().for_each(|v| *v *= factor[j]));
     }
 
@@ -153,39 +161,39 @@ impl Block {
     }
 
     /// Column `j`, scaled.
-    pub(super) fn scaled_column(&self, j: usize, factor: f64) -> Vec<c64> {
+    pub(crate) fn scaled_column(&self, j: usize, factor: f64) -> Vec<c64> {
         let [re, im] = self.vector(j);
         re.iter().zip(im).map(|(a, b)| c64::new(factor * a, factor * b)).collect()
     }
 
     /// Column `j`.
-    pub(super) fn column(&self, j: usize) -> Vec<c64> {
+    pub fn column(&self, j: usize) -> Vec<c64> {
         self.scaled_column(j, 1.0)
     }
 
     /// dᵀx of vector j.
-    pub(super) fn along(&self, j: usize, d: &SparseVector) -> c64 {
+    pub(crate) fn along(&self, j: usize, d: &SparseVector) -> c64 {
         let [re, im] = self.vector(j).map(|part| d.dot(part));
         c64::new(re, im)
     }
 
     /// self\[:, j\]ᴴ x\[:, j\].
-    pub(super) fn dot(&self, j: usize, x: &Block) -> c64 {
+    pub fn dot(&self, j: usize, x: &Block) -> c64 {
         conjugate_dot(self.vector(j), x.vector(j))
     }
 
     /// self\[rows, j\]ᴴ x\[:, j\].
-    pub(super) fn dot_rows(&self, j: usize, rows: &[usize], x: &Block) -> c64 {
+    pub(crate) fn dot_rows(&self, j: usize, rows: &[usize], x: &Block) -> c64 {
         rows.iter().enumerate().map(|(k, i)| self.get(*i, j).conj() * x.get(k, j)).sum()
     }
 
     /// ‖self\[:, j\]‖₂.
-    pub(super) fn norm(&self, j: usize) -> f64 {
+    pub fn norm(&self, j: usize) -> f64 {
         self.vector(j).map(|part| dot(part, part)).iter().sum::<f64>().sqrt()
     }
 
     /// ‖self\[:, j\] + x\[:, j\]‖₂.
-    pub(super) fn norm_of_sum(&self, j: usize, x: &Block) -> f64 {
+    pub(crate) fn norm_of_sum(&self, j: usize, x: &Block) -> f64 {
         let parts = self.vector(j).into_iter().zip(x.vector(j));
         parts.map(|(own, x)| own.iter().zip(x).map(|(a, b)| (a + b).powi(2)).sum::<f64>()).sum::<f64>().sqrt()
     }

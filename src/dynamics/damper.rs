@@ -12,27 +12,27 @@ use std::sync::Arc;
 
 /// C and H of a structure, each α M + β K, a few rows, and what is wide: seldom all of them.
 #[derive(Debug, Clone)]
-pub(super) struct Damper<'a> {
-    pub(super) viscous: DamperPart,
-    pub(super) loss: DamperPart,
-    pub(super) modal: Option<&'a ModalDamping>,
+pub(crate) struct Damper<'a> {
+    pub(crate) viscous: DamperPart,
+    pub(crate) loss: DamperPart,
+    pub(crate) modal: Option<&'a ModalDamping>,
 }
 
 /// C, but for modal damping, or H.
 #[derive(Debug, Clone, Default)]
-pub(super) struct DamperPart {
+pub(crate) struct DamperPart {
     /// α M + β K + rest.
-    pub(super) split: Proportional,
+    pub(crate) split: Proportional,
     /// The rest, where it has entries in few rows.
-    pub(super) few: Option<RowSparse>,
+    pub(crate) few: Option<RowSparse>,
 }
 
 /// Vectors B and Y, with BᵀMY and BᵀKY.
-pub(super) struct Between<'a> {
-    pub(super) b: Columns<'a>,
-    pub(super) y: MatRef<'a, f64>,
-    pub(super) mass: MatRef<'a, f64>,
-    pub(super) stiffness: MatRef<'a, f64>,
+pub(crate) struct Between<'a> {
+    pub(crate) b: Columns<'a>,
+    pub(crate) y: MatRef<'a, f64>,
+    pub(crate) mass: MatRef<'a, f64>,
+    pub(crate) stiffness: MatRef<'a, f64>,
 }
 
 impl DamperPart {
@@ -44,13 +44,13 @@ impl DamperPart {
     }
 
     /// The rest, where it has entries in many rows.
-    pub(super) fn wide(&self) -> Option<&SparseMatrix> {
+    pub(crate) fn wide(&self) -> Option<&SparseMatrix> {
         self.split.rest.as_ref().filter(|_| self.few.is_none())
     }
 
     /// Whether α M + β K + rest is known to have no negative eigenvalue but for rounding, where K − `lowest` M has none
     /// (`lowest` ≤ 0): known from few rows, without the whole matrix.
-    pub(super) fn dissipates(&self, lowest: f64) -> bool {
+    pub(crate) fn dissipates(&self, lowest: f64) -> bool {
         let Proportional { mass_factor, stiffness_factor, .. } = self.split;
         let least = if stiffness_factor == 0.0 { 0.0 } else { stiffness_factor * lowest };
         let proportional = stiffness_factor >= 0.0 && mass_factor + least >= 0.0;
@@ -59,7 +59,7 @@ impl DamperPart {
     }
 
     /// BᵀXY.
-    pub(super) fn form(&self, Between { b, y, mass, stiffness }: &Between<'_>) -> Mat<f64> {
+    pub(crate) fn form(&self, Between { b, y, mass, stiffness }: &Between<'_>) -> Mat<f64> {
         let Proportional { mass_factor, stiffness_factor, .. } = self.split;
         let mut form = *mass * faer::Scale(mass_factor) + *stiffness * faer::Scale(stiffness_factor);
         if let Some(few) = &self.few {
@@ -73,14 +73,14 @@ impl DamperPart {
 }
 
 impl<'a> Damper<'a> {
-    pub(super) fn new(damping: &'a Damping, mass: &SparseMatrix, stiffness: &SparseMatrix) -> Self {
+    pub(crate) fn new(damping: &'a Damping, mass: &SparseMatrix, stiffness: &SparseMatrix) -> Self {
         let part = |x: &Option<Arc<SparseMatrix>>| DamperPart::new(x.as_deref(), mass, stiffness);
         let (viscous, loss) = rayon::join(|| part(&damping.viscous), || part(&damping.hysteretic));
         Damper { viscous, loss, modal: damping.modal.as_ref() }
     }
 
     /// [`DamperPart::form`] of C, modal damping included.
-    pub(super) fn viscous_form(&self, of: &Between<'_>) -> Mat<f64> {
+    pub(crate) fn viscous_form(&self, of: &Between<'_>) -> Mat<f64> {
         let mut form = self.viscous.form(of);
         if let Some(modal) = self.modal {
             form += product(of.b.gram(modal.basis.as_ref()).as_ref(), amplitudes(modal, of.y).as_ref());
@@ -90,7 +90,7 @@ impl<'a> Damper<'a> {
 }
 
 /// C x of modal damping.
-pub(super) fn modal_times(modal: &ModalDamping, x: MatRef<'_, f64>) -> Mat<f64> {
+pub(crate) fn modal_times(modal: &ModalDamping, x: MatRef<'_, f64>) -> Mat<f64> {
     expand(modal.basis.as_ref(), amplitudes(modal, x).as_ref())
 }
 
