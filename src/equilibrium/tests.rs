@@ -364,7 +364,7 @@ fn a_penalty_however_stiff_carries_the_load() {
                 stiff.displacement.iter().copied().chain(forces).zip(exact).zip(moved)
             {
                 let off = (found - exact).abs();
-                assert!(within(off, 10.0 * moved, RoundOff), "{stiffness:e}: {found} {exact}");
+                assert!(within(off, 20.0 * moved, RoundOff), "{stiffness:e}: {found} {exact}");
             }
             assert!(stiff.points.iter().zip(&reference.points).all(|(a, b)| a.closed() == b.closed()));
         }

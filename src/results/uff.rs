@@ -1,8 +1,9 @@
 //! Universal files for test-data programs: frequency responses and mode shapes.
 
-use super::{FileNames, FrfResult, NamedModes, PlaceAndDirection, RunResults, write_result};
+use super::{FileNames, FrfResult, Geometry, NamedModes, PlaceAndDirection, RunResults, write_result};
 use crate::error::Result;
-use crate::measured::uff::{Function, RealShape, functions_file, modes_text};
+use crate::measured::uff::{Element, Function, RealShape, functions_file, modes_text};
+use crate::mesh::{Cell, UniversalKind};
 use std::path::Path;
 
 /// Writes `frf_<name>.uff` into the folder `dir`.
@@ -46,7 +47,7 @@ pub(super) fn write_modes(dir: &Path, results: &RunResults) -> Result<()> {
         // A name for every set, so that the files of a set bear one name.
         let name = names.next(&set.name);
         if set.universal {
-            let text = modes(&results.geometry.nodes, set);
+            let text = modes(&results.geometry, set);
             write_result(dir, &format!("modes_{name}.uff"), text.as_bytes())?;
         }
     }
@@ -54,7 +55,7 @@ pub(super) fn write_modes(dir: &Path, results: &RunResults) -> Result<()> {
 }
 
 /// Every mode of a set; node k has label k + 1. Nodes at rest are left out of a shape.
-fn modes(nodes: &[[f64; 3]], set: &NamedModes) -> String {
+fn modes(geometry: &Geometry, set: &NamedModes) -> String {
     let label = |k: usize| k as u64 + 1;
     let motion = |k: usize| {
         let motions = set.shape(k).into_iter().enumerate().map(|(node, u)| (label(node), [u[0], u[1], u[2]]));
@@ -67,7 +68,15 @@ fn modes(nodes: &[[f64; 3]], set: &NamedModes) -> String {
         damping_ratio: set.damping_ratio.get(k).copied().unwrap_or(0.0),
         motion: Box::new(motion(k)),
     });
-    modes_text(&set.name, nodes.iter().enumerate().map(|(k, x)| (label(k), *x)), modes)
+    let element = |cell: &Cell| {
+        let UniversalKind { descriptor, order } = cell.kind().universal()?;
+        Some(Element {
+            descriptor,
+            nodes: order.iter().map(|k| label(cell.nodes()[usize::from(*k)])).collect(),
+        })
+    };
+    let points = geometry.nodes.iter().enumerate().map(|(k, x)| (label(k), *x));
+    modes_text(&set.name, points, geometry.cells.iter().filter_map(element), modes)
 }
 
 #[cfg(test)]
@@ -139,7 +148,7 @@ mod tests {
     fn shapes_come_back_as_they_were_written() {
         let results = sample::rig();
         let set = results.all::<NamedModes>()[0];
-        let text = modes(&results.geometry.nodes, set);
+        let text = modes(&results.geometry, set);
         let (back, warnings) =
             read("t", text.as_bytes(), Unstated { unit: 1.0, quantity: None }).unwrap().into_set();
         assert!(warnings.is_empty() && back.modes.len() == set.modes.len(), "{warnings:?}");

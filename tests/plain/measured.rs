@@ -8,7 +8,7 @@ use std::process::Command;
 use stridor::bounds::{Origin::*, within};
 use stridor::linalg::c64;
 use stridor::measured::Quantity;
-use stridor::measured::uff::{Function, RealShape, Unstated, functions_file, modes_text, read};
+use stridor::measured::uff::{Element, Function, RealShape, Unstated, functions_file, modes_text, read};
 
 /// The release whose behaviour the test knows.
 const PYUFF: &str = "2.5.8";
@@ -49,8 +49,10 @@ def ours(folder):
     off = lambda a, b: float(np.max(np.abs(np.asarray(a) - b)) / np.max(np.abs(b)))
     modes = pyuff.UFF(folder + '/modes.uff')
     sets = modes.read_sets()
-    assert list(modes.get_set_types()) == [164, 15, 55], modes.get_set_types()
-    units, nodes, mode = sets
+    assert list(modes.get_set_types()) == [164, 2411, 2412, 55], modes.get_set_types()
+    units, nodes, elements, mode = sets
+    assert list(elements[91][0]['nodes_nums']) == [1, 2, 3], elements
+    assert list(elements[94][0]['nodes_nums']) == [2, 3, 4, 5], elements
     assert units['length'] == 1.0 and units['force'] == 1.0
     points = np.array([nodes['x'], nodes['y'], nodes['z']]).T
     motion = np.array([mode['r1'], mode['r2'], mode['r3']]).T
@@ -98,7 +100,9 @@ fn universal_files_go_both_ways_with_pyuff() {
         damping_ratio: 0.0125,
         motion: Box::new(motion),
     };
-    let modes = modes_text("test", labelled(), std::iter::once(mode));
+    let element = |descriptor, nodes: &[u64]| Element { descriptor, nodes: nodes.to_vec() };
+    let elements = [element(91, &[1, 2, 3]), element(94, &[2, 3, 4, 5])].into_iter();
+    let modes = modes_text("test", labelled(), elements, std::iter::once(mode));
     std::fs::write(dir.path().join("modes.uff"), modes).unwrap();
     let (hz, h) = response();
     let function = Function {

@@ -33,6 +33,7 @@ mod quadrature;
 pub mod quality;
 mod shape;
 mod skin;
+mod universal;
 mod write;
 
 pub use cell::{Cell, cell_nodes};
@@ -43,6 +44,7 @@ pub use kind::{CellKind, CellTable};
 pub use locate::{FaceTree, LocatedPoint};
 pub use quadrature::QuadraturePoint;
 pub use skin::{Side, outer_faces, outward};
+pub use universal::UniversalKind;
 pub use write::{to_msh, write};
 
 use stridor_base::error::{Error, Fault, Result, nearest};

@@ -71,7 +71,7 @@ fn a_test_made_of_the_models_own_modes_is_found_again() {
         damping_ratio: 0.004,
         motion: Box::new(motion.into_iter()),
     });
-    let text = modes_text("synthetic", points, modes);
+    let text = modes_text("synthetic", points, std::iter::empty(), modes);
     // Without its units: the case says mm.
     let bare = &text[text.find("    -1\n    15\n").unwrap()..];
     std::fs::write(dir.path().join("test.uff"), bare).unwrap();

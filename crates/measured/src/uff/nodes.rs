@@ -180,3 +180,13 @@ pub(super) fn write(points: impl Iterator<Item = (u64, [f64; 3])>) -> String {
     }
     text + "    -1\n"
 }
+
+/// Dataset 2411 with points by label \[m\].
+pub(super) fn write_double(points: impl Iterator<Item = (u64, [f64; 3])>) -> String {
+    let mut text = String::from("    -1\n  2411\n");
+    for (label, place) in points {
+        let [x, y, z] = place.map(|v| e_format(v, 25, 16).replace('E', "D"));
+        text += &format!("{label:10}{:10}{:10}{:10}\n{x}{y}{z}\n", 0, 0, 1);
+    }
+    text + "    -1\n"
+}
