@@ -73,7 +73,7 @@ fn a_test_made_of_the_models_own_modes_is_found_again() {
     });
     let text = modes_text("synthetic", points, std::iter::empty(), modes);
     // Without its units: the case says mm.
-    let bare = &text[text.find("    -1\n    15\n").unwrap()..];
+    let bare = &text[text.find("    -1\n  2411\n").unwrap()..];
     std::fs::write(dir.path().join("test.uff"), bare).unwrap();
     let measured =
         format!("[measured.own]\nof = \"disc\"\nfile = \"test.uff\"\nreach = \"1 mm\"\n{}", transform("mm"));
