@@ -6,6 +6,8 @@
 stiffness k and damping c between the two deflections; friction μ on faces 2.5 mm off the mid-planes turns the normal force
 into moments about the radius, which makes K and C unsymmetric in 600 rows. Rayleigh damping besides.
 
+`solid`: a steel ring (75 to 150 mm, 25 mm thick) clamped at its bore, of 10-node tetrahedra of one size: bricks cut into six.
+
 `step`: one such disc with Rayleigh damping, pressed at ten nodes on a counter-body that slides past. The stiffness and friction of
 the contact stay out of the matrices: case.toml has them.
 
@@ -38,6 +40,19 @@ bending_only = true
 rotary_inertia = false
 [support.hub]
 on = "hub"
+"""
+SOLID = """title = "A clamped ring of solids"
+[mesh]
+file = "ring.msh"
+unit = "m"
+[material.steel]
+youngs_modulus = "210 GPa"
+poissons_ratio = 0.3
+density = "7850 kg/m^3"
+[solid.ring]
+material = "steel"
+[support.bore]
+on = "bore"
 """
 STEP = """title = "A disc in sliding contact at ten points"
 [matrices]
@@ -73,6 +88,56 @@ def disc(stridor, folder, dofs, thickness):
         places = np.array([[float(row["y"]), float(row["z"])] for row in csv.DictReader(rows) if row["ux"] == "1"])
     assert m.shape[0] == 3 * len(places)
     return m, k, places
+
+
+def ring_mesh(path, dofs):
+    """Nodes are the points of a grid of half the bricks' size: corners, and the middles of all edges of the six tetrahedra of a brick,
+    which have one diagonal in common."""
+    inner, outer, thickness = 0.075, 0.15, 0.025
+    radial = max(2, round((dofs / 75) ** (1 / 3)))
+    through = max(1, round(radial * thickness / (outer - inner)))
+    around = max(8, round(np.pi * (outer + inner) * radial / (outer - inner)))
+    i, j, k = np.meshgrid(np.arange(2 * radial + 1), np.arange(2 * around), np.arange(2 * through + 1), indexing="ij")
+    number = lambda at: 1 + (at[..., 0] * 2 * around + at[..., 1] % (2 * around)) * (2 * through + 1) + at[..., 2]
+    radius, angle = inner + (outer - inner) * i / (2 * radial), np.pi * j / around
+    nodes = np.stack([radius * np.cos(angle), radius * np.sin(angle), thickness * k / (2 * through)], -1).reshape(-1, 3)
+    bricks = 2 * np.stack(np.meshgrid(*(np.arange(n) for n in (radial, around, through)), indexing="ij"), -1).reshape(-1, 3)
+    cells = []
+    for first, second in ((0, 1), (1, 2), (2, 0), (0, 2), (2, 1), (1, 0)):
+        steps = np.zeros((4, 3), int)
+        steps[1:, first], steps[2:, second], steps[3] = 2, 2, 2
+        if np.linalg.det(steps[1:] - steps[0]) < 0:
+            steps[[1, 2]] = steps[[2, 1]]
+        # The order of Gmsh.
+        edges = [(0, 1), (1, 2), (2, 0), (3, 0), (2, 3), (1, 3)]
+        places = np.concatenate([steps, [(steps[a] + steps[b]) // 2 for a, b in edges]])
+        cells.append(number(bricks[:, None] + places))
+    cells = np.concatenate(cells)
+    # On the bore: the sides of bricks in two triangles, along the diagonal that the tetrahedra have.
+    walls, faces = bricks[bricks[:, 0] == 0], []
+    for corners in ([[0, 0, 0], [0, 2, 0], [0, 2, 2]], [[0, 0, 0], [0, 0, 2], [0, 2, 2]]):
+        corners = np.array(corners)
+        places = np.concatenate([corners, [(corners[a] + corners[b]) // 2 for a, b in ((0, 1), (1, 2), (2, 0))]])
+        faces.append(number(walls[:, None] + places))
+    faces = np.concatenate(faces)
+    with open(path, "w") as file:
+        file.write('$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n3 1 "ring"\n2 2 "bore"\n$EndPhysicalNames\n')
+        file.write(f"$Nodes\n{len(nodes)}\n")
+        np.savetxt(file, np.c_[np.arange(1, len(nodes) + 1), nodes], fmt="%d %.17g %.17g %.17g")
+        file.write(f"$EndNodes\n$Elements\n{len(cells) + len(faces)}\n")
+        for first, kind, of, tag in ((1, 11, cells, 1), (1 + len(cells), 9, faces, 2)):
+            head = np.tile([kind, 2, tag, tag], (len(of), 1))
+            np.savetxt(file, np.c_[np.arange(first, first + len(of)), head, of], fmt="%d")
+        file.write("$EndElements\n")
+
+
+def solid(stridor, folder, dofs):
+    """M and K of a ring of solids; every node has ux, uy, uz."""
+    folder.mkdir(parents=True, exist_ok=True)
+    ring_mesh(folder / "ring.msh", dofs)
+    (folder / "case.toml").write_text(SOLID)
+    subprocess.run([stridor, "export", folder / "case.toml", "--out", folder / "matrices", "--quiet"], check=True)
+    return [sp.csr_matrix(scipy.io.mmread(folder / "matrices" / f"{name}.mtx")) for name in ("mass", "stiffness")]
 
 
 def two_discs(stridor, folder, dofs):
@@ -121,6 +186,8 @@ def main(stridor, folder, kind, dofs):
         if kind == "step":
             matrices["c"] = ALPHA * m + BETA * k
             (folder / "case.toml").write_text(pressed(places))
+    elif kind == "solid":
+        matrices = dict(zip("mk", solid(stridor, folder / "parts", dofs)))
     else:
         matrices = dict(zip("mck", two_discs(stridor, folder, dofs)))
     for name, matrix in matrices.items():

@@ -1,7 +1,7 @@
 //! The faces that the counter-body of a contact offers, or the master of a tie.
 
 use super::regions::Regions;
-use crate::error::{Error, Fault, Result};
+use crate::error::{Error, Fault, Result, nearest};
 use crate::mesh::{Cell, made_of};
 use crate::structure::{Model, Part};
 
@@ -34,7 +34,10 @@ pub fn counter_faces<'a>(
     };
     let fault = |found: String, help: &str| Error::input(Fault::new(place, found, expected).with_help(help));
     if regions.mesh.region(name).is_none() {
-        return Err(fault(format!("\"{name}\""), ""));
+        let faces = regions.mesh.regions.iter().filter(|region| region.dimension == 2);
+        let names = known.iter().copied().chain(faces.map(|region| region.name.as_str()));
+        let help = nearest(name, names).map_or(String::new(), |near| format!("Did you mean \"{near}\"?"));
+        return Err(fault(format!("\"{name}\""), &help));
     }
     let region = regions.region(name, place)?;
     if region.dimension != 2 {

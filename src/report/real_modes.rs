@@ -2,7 +2,7 @@
 
 use super::disc_modes;
 use super::finding::{Finding, FindingClass};
-use super::format::{fixed, given, hertz, power, signed};
+use super::format::{fixed, given, hertz, power, signed, significant};
 use super::section::{Display, ReportSection};
 use super::table::{ReportTable, idle};
 use crate::results::{MeasuredComparison, NamedModes, RunResults, file_name};
@@ -47,12 +47,16 @@ fn finding(sets: &[&NamedModes]) -> Finding {
 fn negative(set: &NamedModes) -> Option<String> {
     let negative = set.modes.negative;
     let fastest = set.modes.eigenvalues.first().map_or(0.0, |square| (-square).max(0.0).sqrt());
-    let modes = if negative == 1 { "1 mode has".into() } else { format!("{negative} modes have") };
+    let [modes, have] = if negative == 1 {
+        ["1 mode".into(), "has".to_string()]
+    } else {
+        [format!("{negative} modes"), "have".to_string()]
+    };
     (negative > 0).then(|| {
         format!(
-            "Unstable: {modes} ω² < 0 in {}; the state is beyond buckling, and is left as exp(σt), σ up to {} 1/s.",
+            "Unstable: {modes} of {} {have} ω² < 0; the state is beyond buckling, and is left as exp(σt), σ up to {} 1/s.",
             set.name,
-            given(fastest)
+            significant(fastest, 4)
         )
     })
 }

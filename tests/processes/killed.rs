@@ -262,12 +262,20 @@ fn killed_runs_resume(moments: &[f64]) {
 #[test]
 #[cfg(unix)]
 fn an_interrupted_run_says_how_to_continue() {
-    use std::os::unix::process::ExitStatusExt;
+    use std::os::unix::process::{CommandExt, ExitStatusExt};
     let folder = TempDir::new().expect("a temporary folder");
     let at = folder.path();
     std::fs::write(at.join("case.toml"), BLOCK.replace("200 s", "2000 s")).expect("a case");
     let mut command = Command::new(env!("CARGO_BIN_EXE_stridor"));
     command.args(["transient", "case.toml", "--out", "out"]).current_dir(at);
+    // Whatever runs the tests in the background ignores interrupts, which is inherited.
+    // SAFETY: signal may be called between fork and exec.
+    unsafe {
+        command.pre_exec(|| {
+            libc::signal(libc::SIGINT, libc::SIG_DFL);
+            Ok(())
+        })
+    };
     let child = command.stderr(Stdio::piped()).spawn().expect("the binary runs");
     let deadline = Instant::now() + Duration::from_secs(60);
     while !at.join("out/record.bin").exists() && Instant::now() < deadline {
