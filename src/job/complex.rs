@@ -21,6 +21,9 @@ use std::f64::consts::TAU;
 /// Floating-point operations of a certificate that is not requested explicitly, one that takes at most half as many as the
 /// eigenvalues aside: two seconds of one core.
 const CHEAP: f64 = 1e10;
+/// So many degrees of freedom have all their real modes as a basis: damping and friction may bring modes into the band, or let them
+/// grow, that are far beyond it without them.
+const SMALL: usize = 60;
 /// How far real modes reach beyond the band that they span where the case leaves it open, by the band's top; and how far
 /// at least, where the band turned out wider than expected.
 const SPANNED: f64 = 1.5;
@@ -203,8 +206,12 @@ pub fn whole_modes(
     clock: &mut Clock,
     observer: &dyn Observer,
 ) -> Result<RealModes> {
-    let modes = clock
-        .time("real modes of the whole", || modal::compute(structure, ModesWanted::BelowHz(below), observer));
+    let modes = clock.time("real modes of the whole", || {
+        let all = (structure.n_dofs() <= SMALL).then(|| ModesWanted::Count(structure.n_dofs()));
+        // What has no mass has no mode: there are fewer then.
+        let all = all.and_then(|all| modal::compute(structure, all, observer).ok());
+        all.map_or_else(|| modal::compute(structure, ModesWanted::BelowHz(below), observer), Ok)
+    });
     modes.map(|(modes, _)| modes)
 }
 
@@ -294,4 +301,71 @@ mod tests {
             assert_eq!(found, expected);
         }
     }
+
+    /// Small matrices with negative damping and springs, in bands below their real modes as often as above: every eigenvalue that grows and is
+    /// real, or in the band, is there, by a dense solver.
+    #[test]
+    fn what_grows_in_small_systems_is_found_whatever_the_band() {
+        let mut random = Random::seeded(83);
+        let folder = tempfile::tempdir().unwrap();
+        let mut beyond = 0;
+        for trial in 0..60 {
+            let n = 1 + trial % 5;
+            let symmetric = |diagonal: &mut dyn FnMut() -> f64, others: &mut dyn FnMut() -> f64| {
+                let lower = faer::Mat::from_fn(n, n, |i, j| if i == j { diagonal() } else { others() });
+                faer::Mat::from_fn(n, n, |i, j| lower[(i.max(j), i.min(j))])
+            };
+            let draws: Vec<f64> = (0..4 * n * n).map(|_| random.next()).collect();
+            let mut draws = draws.into_iter().cycle();
+            let mut of = |low: f64, high: f64| low + 0.5 * (draws.next().unwrap() + 1.0) * (high - low);
+            let (diagonal_k, others_k): (Vec<f64>, Vec<f64>) =
+                (0..n * n).map(|_| (of(1.0, 9.0), of(-0.2, 0.2))).unzip();
+            let (diagonal_c, others_c): (Vec<f64>, Vec<f64>) =
+                (0..n * n).map(|_| (of(-8.0, 2.0), of(-0.5, 0.5))).unzip();
+            let matrix = |diagonal: Vec<f64>, others: Vec<f64>| {
+                let (mut diagonal, mut others) = (diagonal.into_iter(), others.into_iter());
+                symmetric(&mut || diagonal.next().unwrap(), &mut || others.next().unwrap())
+            };
+            let (k, c) = (matrix(diagonal_k, others_k), matrix(diagonal_c, others_c));
+            let top = TOPS[trial % TOPS.len()];
+            let write = |name: &str, a: &faer::Mat<f64>| {
+                let entries: Vec<String> = (0..n)
+                    .flat_map(|j| (j..n).map(move |i| (i, j)))
+                    .map(|(i, j)| format!("{} {} {:e}", i + 1, j + 1, a[(i, j)]))
+                    .collect();
+                let head =
+                    format!("%%MatrixMarket matrix coordinate real symmetric\n{n} {n} {}\n", entries.len());
+                std::fs::write(folder.path().join(name), head + &entries.join("\n") + "\n").unwrap();
+            };
+            write("m.mtx", &faer::Mat::identity(n, n));
+            write("k.mtx", &k);
+            write("c.mtx", &c);
+            let text = format!(
+                "[matrices]\nmass = \"m.mtx\"\ndamping = \"c.mtx\"\nstiffness = \"k.mtx\"\n[cea]\nband = [0, {top:?}]\n"
+            );
+            let found = eigenvalues(&Case::parse("small", &text, folder.path().into()).unwrap());
+            let companion = faer::Mat::from_fn(2 * n, 2 * n, |i, j| match (i < n, j < n) {
+                (true, _) => f64::from(j == i + n),
+                (false, true) => -k[(i - n, j)],
+                (false, false) => -c[(i - n, j - n)],
+            });
+            let (all, _) = crate::linalg::unsymmetric::eigenpairs(companion.as_ref()).unwrap();
+            let top = std::f64::consts::TAU * top;
+            for z in all.iter().filter(|z| z.re > 1e-6 && z.im >= 0.0) {
+                if z.im > 1e-9 && z.im > top * (1.0 - 1e-9) {
+                    continue;
+                }
+                beyond += usize::from(z.norm() > top);
+                let off = found.iter().map(|other| (other - z).norm()).fold(f64::INFINITY, f64::min);
+                assert!(
+                    within(off, 1e-6 * z.norm(), Tolerance),
+                    "{trial}: {z} of {all:?}, found {found:?}, up to {top}"
+                );
+            }
+        }
+        assert!(beyond > 20, "{beyond}");
+    }
+
+    /// Tops of bands \[Hz\]; the real modes are at 0.15 to 0.5 Hz.
+    const TOPS: [f64; 4] = [0.02, 0.08, 0.3, 1.0];
 }

@@ -214,6 +214,11 @@ fn eigenvalue_work(analysis: &CompletedAnalysis<'_>, modes: &ComplexModes) -> f6
 
 /// The count agrees, and yet is no proof.
 fn weak(certificate: &Certificate) -> String {
+    if certificate.margin > 1.0 {
+        return "The count of the unstable modes is no proof at full order: damping that is negative somewhere, or not known to dissipate, is \
+                outside of its premises"
+            .to_string();
+    }
     let help = match certificate.dissipative {
         true => "take more real modes (`cea.basis_below`)",
         false => {
