@@ -89,7 +89,8 @@ fn a_spinning_mass_follows_the_closed_form_with_the_order_of_the_scheme() {
         let expected = if scheme.gamma == 0.6 && scheme.alpha_f == 0.0 { 1.0 } else { 2.0 };
         assert!(within((order - expected).abs(), 0.1, Discretisation), "{label}: {order}");
         let end = rotor.run(scheme, 100, time);
-        assert!(within(end.worst_residual, 1e-12, RoundOff), "{label}: {:e}", end.worst_residual);
+        // Round-off of the works of a step, which are the smaller the less it moves: 1e-14 to 3e-13 of their sum.
+        assert!(within(end.worst_residual, 1e-11, RoundOff), "{label}: {:e}", end.worst_residual);
         let work = end.work;
         let size = work.turnover();
         if h == 0.0 {
