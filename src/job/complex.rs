@@ -311,22 +311,19 @@ mod tests {
         let mut beyond = 0;
         for trial in 0..60 {
             let n = 1 + trial % 5;
-            let symmetric = |diagonal: &mut dyn FnMut() -> f64, others: &mut dyn FnMut() -> f64| {
-                let lower = faer::Mat::from_fn(n, n, |i, j| if i == j { diagonal() } else { others() });
-                faer::Mat::from_fn(n, n, |i, j| lower[(i.max(j), i.min(j))])
+            let mut symmetric = |[low, high]: [f64; 2], others: f64| {
+                let all: Vec<f64> = (0..n * n)
+                    .map(|e| {
+                        if e % (n + 1) == 0 {
+                            random.between(low, high)
+                        } else {
+                            random.between(-others, others)
+                        }
+                    })
+                    .collect();
+                faer::Mat::from_fn(n, n, |i, j| all[i.max(j) * n + i.min(j)])
             };
-            let draws: Vec<f64> = (0..4 * n * n).map(|_| random.next()).collect();
-            let mut draws = draws.into_iter().cycle();
-            let mut of = |low: f64, high: f64| low + 0.5 * (draws.next().unwrap() + 1.0) * (high - low);
-            let (diagonal_k, others_k): (Vec<f64>, Vec<f64>) =
-                (0..n * n).map(|_| (of(1.0, 9.0), of(-0.2, 0.2))).unzip();
-            let (diagonal_c, others_c): (Vec<f64>, Vec<f64>) =
-                (0..n * n).map(|_| (of(-8.0, 2.0), of(-0.5, 0.5))).unzip();
-            let matrix = |diagonal: Vec<f64>, others: Vec<f64>| {
-                let (mut diagonal, mut others) = (diagonal.into_iter(), others.into_iter());
-                symmetric(&mut || diagonal.next().unwrap(), &mut || others.next().unwrap())
-            };
-            let (k, c) = (matrix(diagonal_k, others_k), matrix(diagonal_c, others_c));
+            let (k, c) = (symmetric([1.0, 9.0], 0.2), symmetric([-8.0, 2.0], 0.5));
             let top = TOPS[trial % TOPS.len()];
             let write = |name: &str, a: &faer::Mat<f64>| {
                 let entries: Vec<String> = (0..n)

@@ -82,20 +82,22 @@ pub(super) fn surfaces_twice(
 
 /// Refuses a contact between faces that a tie joins: what is joined does not slide.
 pub(super) fn tied_and_in_contact(case: &Case, (regions, model): (&Regions, &Model), faults: &mut Faults) {
-    let nodes =
-        |cells: Vec<Cell>| -> BTreeSet<Vec<usize>> { cells.iter().map(|face| cell_nodes([face])).collect() };
-    let faces = |name: &str| {
-        let faces = counter_faces(name, regions, model, ("", "")).ok()?.faces;
-        Some(nodes(faces))
-    };
+    type Faces = BTreeSet<Vec<usize>>;
+    let nodes = |cells: Vec<Cell>| -> Faces { cells.iter().map(|face| cell_nodes([face])).collect() };
+    let faces =
+        |name: &str| counter_faces(name, regions, model, ("", "")).ok().map(|found| nodes(found.faces));
+    let ties: Vec<(&String, Faces, Faces)> =
+        case.tie.iter().filter_map(|(name, tie)| Some((name, faces(&tie.on)?, faces(&tie.to)?))).collect();
+    if ties.is_empty() {
+        return;
+    }
+    let common = |a: &Faces, b: &Faces| !a.is_disjoint(b);
     for (name, contact) in &case.contact {
         let body = regions.region(&contact.body, "").ok().map(|region| nodes(regions.cells(region)));
         let (Some(body), Some(counter)) = (body, faces(&contact.counter)) else { continue };
-        for (tie_name, tie) in &case.tie {
-            let (Some(on), Some(to)) = (faces(&tie.on), faces(&tie.to)) else { continue };
-            let common = |a: &BTreeSet<Vec<usize>>, b: &BTreeSet<Vec<usize>>| !a.is_disjoint(b);
-            if common(&body, &on) && common(&counter, &to) || common(&body, &to) && common(&counter, &on) {
-                let found = format!("faces that `tie.{tie_name}` joins");
+        for (tie, on, to) in &ties {
+            if common(&body, on) && common(&counter, to) || common(&body, to) && common(&counter, on) {
+                let found = format!("faces that `tie.{tie}` joins");
                 let fault = Fault::new(format!("`contact.{name}`"), found, "faces that are free to slide");
                 let help = "Remove the contact or the tie, or give each a region of its own";
                 faults.push(fault.with_help(help));

@@ -80,6 +80,11 @@ impl Surface {
         self.moving(&Mat::zeros(0, 0)).side(at)
     }
 
+    /// Whether a place is behind it, heard there or not.
+    pub fn is_behind(&self, at: [f64; 3]) -> bool {
+        Plate { both_sides: true, ..self.moving(&Mat::zeros(0, 0)) }.side(at) < 0.0
+    }
+
     /// The plate in its modes, whose shapes are n_dofs × n_modes.
     pub fn moving(&self, shapes: &Mat<f64>) -> Plate {
         let modes = shapes.ncols();

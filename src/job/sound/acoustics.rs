@@ -60,20 +60,18 @@ pub fn acoustics(prepared: &Prepared<'_>, wanted: &SoundAnalysis) -> Result<Acou
             let found = format!("a place on `{}`", plate.name);
             faults.push(Fault::new(&place, found, "a place farther from it than its elements are wide"));
         } else if !plates.is_empty() && plates.iter().all(|plate| plate.side(*at) == 0.0) {
-            let ahead = |of: &Surface| (0..3).map(|k| of.normal[k] * (at[k] - of.middle[k])).sum::<f64>();
-            let [found, expected, help] =
-                match plates.iter().any(|plate| ahead(plate) < -1e-9 * plate.area.sqrt()) {
-                    true => [
-                        "a place behind the faces",
-                        "one in front of one of them",
-                        "A face of a solid is heard on its outer side only",
-                    ],
-                    false => [
-                        "a place in the plane of the plates",
-                        "one before or behind them",
-                        "There the sound of a plate's front and that of its back cancel",
-                    ],
-                };
+            let [found, expected, help] = match plates.iter().any(|plate| plate.is_behind(*at)) {
+                true => [
+                    "a place behind the faces",
+                    "one in front of one of them",
+                    "A face of a solid is heard on its outer side only",
+                ],
+                false => [
+                    "a place in the plane of the plates",
+                    "one before or behind them",
+                    "There the sound of a plate's front and that of its back cancel",
+                ],
+            };
             faults.push(Fault::new(&place, found, expected).with_help(help));
         }
     }
