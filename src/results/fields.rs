@@ -103,7 +103,7 @@ fn create(file: &hdf5::File, fields: &Fields) -> hdf5::Result<()> {
     list(&root, "Connectivity", &connectivity)?;
     list(&root, "Offsets", &offsets)?;
     root.new_dataset_builder().with_data(&rows(&geometry.nodes)).create("Points")?;
-    let types: Vec<u8> = geometry.cells.iter().map(|cell| cell.kind().table().vtk).collect();
+    let types: Vec<u8> = geometry.cells.iter().map(|cell| cell.kind().table().vtk.number).collect();
     root.new_dataset_builder().with_data(&types).create("Types")?;
     let part: Vec<i32> = geometry.part_of_cell.iter().map(|part| *part as i32).collect();
     root.create_group("CellData")?.new_dataset_builder().with_data(&part).create("part")?;

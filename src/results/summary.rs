@@ -162,7 +162,7 @@ impl Geometry {
                 "1",
                 "kind of every element, by its number in VTK files",
                 vec![Dimension::indexed("element", self.cells.len())],
-                whole(self.cells.iter().map(|cell| usize::from(cell.kind().table().vtk)).collect()),
+                whole(self.cells.iter().map(|cell| usize::from(cell.kind().table().vtk.number)).collect()),
             ))
             .with(Variable::texts("part_names", "names of the parts", parts, self.parts.clone()))
     }

@@ -3,7 +3,7 @@
 use super::{FileNames, FrfResult, Geometry, NamedModes, PlaceAndDirection, RunResults, write_result};
 use crate::error::Result;
 use crate::measured::uff::{Element, Function, RealShape, functions_file, modes_text};
-use crate::mesh::{Cell, UniversalKind};
+use crate::mesh::{Cell, NumberedKind};
 use std::path::Path;
 
 /// Writes `frf_<name>.uff` into the folder `dir`.
@@ -69,11 +69,9 @@ fn modes(geometry: &Geometry, set: &NamedModes) -> String {
         motion: Box::new(motion(k)),
     });
     let element = |cell: &Cell| {
-        let UniversalKind { descriptor, order } = cell.kind().universal()?;
-        Some(Element {
-            descriptor,
-            nodes: order.iter().map(|k| label(cell.nodes()[usize::from(*k)])).collect(),
-        })
+        let NumberedKind { number, order } = cell.kind().table().universal?;
+        let nodes = order.to_file(cell.nodes()).into_iter().map(label).collect();
+        Some(Element { descriptor: u32::from(number), nodes })
     };
     let points = geometry.nodes.iter().enumerate().map(|(k, x)| (label(k), *x));
     modes_text(&set.name, points, geometry.cells.iter().filter_map(element), modes)

@@ -132,30 +132,17 @@ fn flatten(values: &[[f64; 3]]) -> Vec<f64> {
     values.iter().flatten().copied().collect()
 }
 
-/// The type of a number in VTK files, one of those of the table of kinds.
+/// The type of a number in VTK files: all that have a number of nodes of their own.
 fn cell_type(number: u8) -> CellType {
     use CellType::*;
-    const TYPES: [CellType; 18] = [
-        Vertex,
-        Line,
-        QuadraticEdge,
-        Triangle,
-        QuadraticTriangle,
-        Quad,
-        QuadraticQuad,
-        BiquadraticQuad,
-        Tetra,
-        QuadraticTetra,
-        Hexahedron,
-        QuadraticHexahedron,
-        TriquadraticHexahedron,
-        Wedge,
-        QuadraticWedge,
-        BiquadraticQuadraticWedge,
-        Pyramid,
-        QuadraticPyramid,
+    #[rustfmt::skip]
+    const TYPES: [CellType; 25] = [
+        Vertex, Line, Triangle, Pixel, Quad, Tetra, Voxel, Hexahedron, Wedge, Pyramid, QuadraticEdge, QuadraticTriangle,
+        QuadraticQuad, QuadraticTetra, QuadraticHexahedron, QuadraticWedge, QuadraticPyramid, BiquadraticQuad,
+        TriquadraticHexahedron, QuadraticLinearQuad, QuadraticLinearWedge, BiquadraticQuadraticWedge,
+        BiquadraticQuadraticHexahedron, BiquadraticTriangle, CubicLine,
     ];
-    TYPES.into_iter().find(|kind| *kind as u8 == number).unwrap_or(Vertex)
+    TYPES.into_iter().find(|kind| *kind as u8 == number).expect("a type of VTK")
 }
 
 fn cells(geometry: &Geometry) -> Cells {
@@ -166,7 +153,7 @@ fn cells(geometry: &Geometry) -> Cells {
     });
     let offsets = offsets.collect();
     let connectivity = geometry.cells.iter().flat_map(Cell::to_vtk).map(|node| node as u64).collect();
-    let types = geometry.cells.iter().map(|cell| cell_type(cell.kind().table().vtk));
+    let types = geometry.cells.iter().map(|cell| cell_type(cell.kind().table().vtk.number));
     Cells { cell_verts: VertexNumbers::XML { connectivity, offsets }, types: types.collect() }
 }
 
@@ -175,6 +162,13 @@ mod tests {
     use super::*;
     use crate::job::sample;
     use vtkio::model::{IOBuffer, Piece};
+
+    #[test]
+    fn every_kind_of_cell_has_its_type() {
+        for kind in crate::mesh::CellKind::all() {
+            assert_eq!(cell_type(kind.table().vtk.number) as u8, kind.table().vtk.number, "{kind:?}");
+        }
+    }
 
     fn read(path: &Path) -> UnstructuredGridPiece {
         match Vtk::import(path).unwrap().data {

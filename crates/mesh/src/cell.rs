@@ -96,18 +96,15 @@ impl Cell {
         })
     }
 
-    /// Its nodes in the order of VTK files: there the first triangle of a 6-node wedge is seen from outside counter-clockwise.
+    /// Its nodes in the order of VTK files.
     pub fn to_vtk(&self) -> Vec<usize> {
-        match (self.kind, self.nodes()) {
-            (CellKind::Wedge6, &[a, b, c, d, e, f]) => vec![a, c, b, d, f, e],
-            (_, nodes) => nodes.to_vec(),
-        }
+        self.kind.table().vtk.order.to_file(self.nodes())
     }
 
-    /// The nodes of the points, lines, triangles and quadrilaterals that it can be drawn by ([`CellKind::pieces`]).
+    /// The nodes of the points, lines, triangles and quadrilaterals that it can be drawn by ([`super::CellTable::pieces`]).
     pub fn pieces(&self) -> impl Iterator<Item = Vec<usize>> + '_ {
         let nodes = self.nodes();
-        self.kind.pieces().iter().map(|piece| piece.iter().map(|k| nodes[usize::from(*k)]).collect())
+        self.kind.table().pieces.iter().map(|piece| piece.iter().map(|k| nodes[usize::from(*k)]).collect())
     }
 
     /// The same cell whose nodes have other numbers.

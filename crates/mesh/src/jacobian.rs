@@ -1,7 +1,7 @@
 //! Cells that are turned inside out: the sign of the Jacobian at every node.
 
 use super::quality::{cross, dot, norm};
-use super::{Cell, Mesh};
+use super::{Cell, CellShape, Mesh};
 
 /// How near to its apex a pyramid is looked at, as a share of the way from its centre: there the Jacobian has no value.
 const NEAR_APEX: f64 = 0.9;
@@ -14,7 +14,7 @@ pub(super) fn keeps_orientation(mesh: &Mesh, cell: &Cell) -> bool {
         return true;
     }
     let places = kind.reference_coordinates();
-    let corners = &kind.table().corners;
+    let corners = kind.corners();
     let centre: [f64; 3] =
         std::array::from_fn(|k| corners.iter().map(|c| c[k]).sum::<f64>() / corners.len() as f64);
     let tangents = |at: [f64; 3]| tangents(mesh, cell, at);
@@ -27,7 +27,7 @@ pub(super) fn keeps_orientation(mesh: &Mesh, cell: &Cell) -> bool {
         }
     };
     let middle = tangents(centre);
-    let apex = |k: usize| kind.table().name.ends_with("pyramid") && k == 4;
+    let apex = |k: usize| kind.table().shape == CellShape::Pyramid && k == 4;
     let near = |k: usize| std::array::from_fn(|c| centre[c] + NEAR_APEX * (places[k][c] - centre[c]));
     (0..places.len()).all(|k| size(if apex(k) { near(k) } else { places[k] }, &middle) > 0.0)
         && size(centre, &middle) > 0.0

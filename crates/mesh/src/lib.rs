@@ -33,18 +33,16 @@ mod quadrature;
 pub mod quality;
 mod shape;
 mod skin;
-mod universal;
 mod write;
 
 pub use cell::{Cell, cell_nodes};
 pub use check::{Diagnosis, diagnose, diagnose_apart};
 pub use gmsh::read;
 pub use info::Info;
-pub use kind::{CellKind, CellTable};
+pub use kind::{CellKind, CellShape, CellTable, NamedKind, NumberedKind, Order, Program};
 pub use locate::{FaceTree, LocatedPoint};
 pub use quadrature::QuadraturePoint;
 pub use skin::{Side, outer_faces, outward};
-pub use universal::UniversalKind;
 pub use write::{to_msh, write};
 
 use stridor_base::error::{Error, Fault, Result, nearest};

@@ -171,7 +171,7 @@ impl<'a> FaceTree<'a> {
             let share = on_triangle(of.map(|k| self.nodes[cell.nodes()[k]]), x);
             take(best, std::array::from_fn(|c| (0..3).map(|i| share[i] * places[of[i]][c]).sum()));
         };
-        for piece in kind.pieces() {
+        for piece in kind.table().pieces {
             match **piece {
                 [a, b, c] => on_triangle(&mut best, [a, b, c]),
                 [a, b, c, d] => {
@@ -188,7 +188,7 @@ impl<'a> FaceTree<'a> {
             {
                 take(&mut best, at);
             }
-            let corners = kind.table().corners;
+            let corners = kind.corners();
             for (i, a) in corners.iter().enumerate() {
                 let b = corners[(i + 1) % corners.len()];
                 let way: [f64; 3] = std::array::from_fn(|k| b[k] - a[k]);

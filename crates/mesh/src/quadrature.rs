@@ -5,7 +5,7 @@
 //! of those of a triangle and a line; pyramids the points of a box shrunk to the apex, x = (1−z) ξ, y = (1−z) η, with those of Jacobi for
 //! the weight (1−z)² along z.
 
-use super::CellKind;
+use super::{CellKind, CellShape};
 use nalgebra::{DMatrix, SymmetricEigen};
 
 /// A point of a quadrature.
@@ -88,35 +88,29 @@ impl CellKind {
     /// The points of a quadrature on the reference cell, exact for polynomials of `degree` (five at most) in each coordinate of boxes, and in all together
     /// of triangles and tetrahedra.
     pub fn quadrature(self, degree: usize) -> Vec<QuadraturePoint> {
-        use CellKind::*;
+        use CellShape::*;
         let gauss = jacobi((degree + 2) / 2, 0);
         let point = |at: [f64; 3], weight: f64| QuadraturePoint { at, weight };
         let line = gauss.iter().copied();
         let square = || gauss.iter().flat_map(|(x, a)| gauss.iter().map(move |(y, b)| ([*x, *y], a * b)));
-        match self {
-            Point1 => vec![point([0.0; 3], 1.0)],
-            Line2 | Line3 => line.map(|(x, w)| point([x, 0.0, 0.0], w)).collect(),
-            Triangle3 | Triangle6 => {
-                triangle(degree).into_iter().map(|([x, y], w)| point([x, y, 0.0], w)).collect()
-            }
-            Quadrilateral4 | Quadrilateral8 | Quadrilateral9 => {
-                square().map(|([x, y], w)| point([x, y, 0.0], w)).collect()
-            }
-            Tetrahedron4 | Tetrahedron10 => {
-                tetrahedron(degree).into_iter().map(|(at, w)| point(at, w)).collect()
-            }
-            Hexahedron8 | Hexahedron20 | Hexahedron27 => {
+        match self.table().shape {
+            Point => vec![point([0.0; 3], 1.0)],
+            Line => line.map(|(x, w)| point([x, 0.0, 0.0], w)).collect(),
+            Triangle => triangle(degree).into_iter().map(|([x, y], w)| point([x, y, 0.0], w)).collect(),
+            Quadrilateral => square().map(|([x, y], w)| point([x, y, 0.0], w)).collect(),
+            Tetrahedron => tetrahedron(degree).into_iter().map(|(at, w)| point(at, w)).collect(),
+            Hexahedron => {
                 let along = |(z, c): (f64, f64)| square().map(move |([x, y], w)| point([x, y, z], w * c));
                 line.flat_map(along).collect()
             }
-            Wedge6 | Wedge15 | Wedge18 => {
+            Wedge => {
                 let faces = triangle(degree);
                 let along = |(z, c): (f64, f64)| {
                     faces.iter().map(move |([x, y], w)| point([*x, *y, z], w * c)).collect::<Vec<_>>()
                 };
                 line.flat_map(along).collect()
             }
-            Pyramid5 | Pyramid13 => {
+            Pyramid => {
                 let along = |(t, c): (f64, f64)| {
                     // z = (1 + t)/2; (1 − z)² dz = (1 − t)² dt/8.
                     let height = 0.5 * (1.0 - t);
@@ -142,16 +136,18 @@ mod tests {
     fn exact(kind: CellKind, [a, b, c]: [i32; 3]) -> f64 {
         let line = |e: i32| if e % 2 == 0 { 2.0 / f64::from(e + 1) } else { 0.0 };
         let triangle = factorial(a) * factorial(b) / factorial(a + b + 2);
-        match kind.table().name.split('-').next_back().unwrap().split(' ').next_back().unwrap() {
-            "line" => line(a),
-            "triangle" => triangle,
-            "quadrilateral" => line(a) * line(b),
-            "tetrahedron" => factorial(a) * factorial(b) * factorial(c) / factorial(a + b + c + 3),
-            "hexahedron" => line(a) * line(b) * line(c),
-            "wedge" => triangle * line(c),
+        match kind.table().shape {
+            CellShape::Point => 1.0,
+            CellShape::Line => line(a),
+            CellShape::Triangle => triangle,
+            CellShape::Quadrilateral => line(a) * line(b),
+            CellShape::Tetrahedron => factorial(a) * factorial(b) * factorial(c) / factorial(a + b + c + 3),
+            CellShape::Hexahedron => line(a) * line(b) * line(c),
+            CellShape::Wedge => triangle * line(c),
             // ∫ (1−z)^(a+b+2) z^c dz times the square's.
-            "pyramid" => line(a) * line(b) * factorial(a + b + 2) * factorial(c) / factorial(a + b + c + 3),
-            _ => 1.0,
+            CellShape::Pyramid => {
+                line(a) * line(b) * factorial(a + b + 2) * factorial(c) / factorial(a + b + c + 3)
+            }
         }
     }
 

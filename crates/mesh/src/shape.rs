@@ -9,40 +9,9 @@
 //! * on pyramids r = xy/(1 − z) besides, which is a polynomial on every face (Bedrosian, Int. J. Numer. Meth. Eng. 35 (1992) 95).
 
 use super::CellKind;
+use super::kind::products::Product;
 use nalgebra::DMatrix;
 use std::sync::OnceLock;
-
-/// Exponents of x, y, z and r.
-type Product = [u8; 4];
-
-/// The products of a kind.
-fn products(kind: CellKind) -> Vec<Product> {
-    use CellKind::*;
-    let order = u8::from(!kind.is_first_order()) + 1;
-    let most = |dimension: usize| [0, 1, 2].map(|k| if k < dimension { order } else { 0 });
-    let box_of = |[a, b, c]: [u8; 3]| {
-        (0..=a).flat_map(move |x| (0..=b).flat_map(move |y| (0..=c).map(move |z| [x, y, z, 0])))
-    };
-    let degree = |p: &Product| p[0] + p[1] + p[2];
-    let twos = |p: &Product| p[..3].iter().filter(|e| **e == 2).count();
-    let all = box_of(most(kind.dimension()));
-    match kind {
-        Point1 => vec![[0; 4]],
-        Line2 | Line3 | Triangle3 | Triangle6 | Tetrahedron4 | Tetrahedron10 => {
-            all.filter(|p| degree(p) <= order).collect()
-        }
-        Quadrilateral4 | Quadrilateral9 | Hexahedron8 | Hexahedron27 => all.collect(),
-        Quadrilateral8 | Hexahedron20 => all.filter(|p| twos(p) <= 1).collect(),
-        Wedge6 | Wedge18 => all.filter(|p| p[0] + p[1] <= order).collect(),
-        Wedge15 => all.filter(|p| p[0] + p[1] <= if p[2] == 2 { 1 } else { 2 }).collect(),
-        Pyramid5 => vec![[0; 4], [1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]],
-        Pyramid13 => {
-            // All of second degree but xy, and r times all of first degree.
-            let plain = all.filter(|p| degree(p) <= 2 && *p != [1, 1, 0, 0]);
-            plain.chain([[0, 0, 0, 1], [1, 0, 0, 1], [0, 1, 0, 1], [0, 0, 1, 1]]).collect()
-        }
-    }
-}
 
 /// A product and its derivatives by x, y and z.
 fn value_and_gradient(p: Product, [x, y, z]: [f64; 3]) -> (f64, [f64; 3]) {
@@ -74,7 +43,7 @@ impl Basis {
     }
 
     fn new(kind: CellKind) -> Basis {
-        let (products, nodes) = (products(kind), kind.reference_coordinates());
+        let (products, nodes) = (kind.table().products.list(kind.dimension()), kind.reference_coordinates());
         let at_nodes =
             DMatrix::from_fn(nodes.len(), products.len(), |i, j| value_and_gradient(products[j], nodes[i]).0);
         let combinations = at_nodes.try_inverse().expect("the products are independent at the nodes");

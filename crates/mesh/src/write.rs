@@ -99,9 +99,9 @@ pub fn to_msh(mesh: &Mesh, unit_in_metres: f64) -> Result<String> {
     let m = mesh.elements.len();
     line(format_args!("{} {m} 1 {m}", blocks.len()));
     for (dimension, tag, kind, block) in blocks {
-        line(format_args!("{dimension} {tag} {} {}", kind.table().gmsh, block.len()));
+        line(format_args!("{dimension} {tag} {} {}", kind.table().gmsh.number, block.len()));
         for e in block {
-            let nodes = kind.to_gmsh(mesh.elements[e].nodes());
+            let nodes = kind.table().gmsh.order.to_file(mesh.elements[e].nodes());
             let nodes: Vec<String> = nodes.iter().map(|n| (n + 1).to_string()).collect();
             line(format_args!("{} {}", e + 1, nodes.join(" ")));
         }

@@ -23,6 +23,6 @@ pub fn split_face(face: &Cell) -> Vec<WeightedTriangle> {
         [a, b, c, d] => [[a, b, c], [a, c, d], [a, b, d], [b, c, d]].map(|t| (t, 0.5)).to_vec(),
         _ => Vec::new(),
     };
-    let pieces = face.kind().pieces().iter().flat_map(triangles);
+    let pieces = face.kind().table().pieces.iter().flat_map(triangles);
     pieces.map(|(t, weight)| WeightedTriangle { nodes: t.map(|k| nodes[usize::from(k)]), weight }).collect()
 }

@@ -76,7 +76,7 @@ impl Rules {
                 _ if kind.is_first_order() => (3, 3),
                 _ => (5, 5),
             };
-            let corners = kind.table().corners;
+            let corners = kind.corners();
             let middle =
                 std::array::from_fn(|k| corners.iter().map(|c| c[k]).sum::<f64>() / corners.len() as f64);
             let reduced = (kind == CellKind::Hexahedron20).then(|| table(3));

@@ -1,7 +1,7 @@
 //! Boxes of solids of any kind.
 
 use super::{MOST_NODES, require_positive};
-use crate::{Cell, CellKind, Mesh};
+use crate::{Cell, CellKind, CellShape, Mesh};
 use std::collections::HashMap;
 use stridor_base::error::{Error, Fault, Result};
 
@@ -75,23 +75,21 @@ fn bricks([nx, ny, nz]: [usize; 3]) -> (Vec<[f64; 3]>, Vec<[usize; 8]>) {
 
 /// The corners of the cells of `kind` in a brick; a pyramid's apex is a new node.
 fn split(kind: CellKind, brick: [usize; 8], mesh: &mut Mesh) -> Result<Vec<Vec<usize>>> {
-    use CellKind::*;
+    use CellShape::*;
     let pick = |of: &[usize]| of.iter().map(|k| brick[*k]).collect::<Vec<_>>();
-    Ok(match kind {
-        Hexahedron8 | Hexahedron20 | Hexahedron27 => vec![brick.to_vec()],
-        Wedge6 | Wedge15 | Wedge18 => vec![pick(&[0, 1, 2, 4, 5, 6]), pick(&[0, 2, 3, 4, 6, 7])],
+    Ok(match kind.table().shape {
+        Hexahedron => vec![brick.to_vec()],
+        Wedge => vec![pick(&[0, 1, 2, 4, 5, 6]), pick(&[0, 2, 3, 4, 6, 7])],
         // Around the diagonal from corner 0 to corner 6.
-        Tetrahedron4 | Tetrahedron10 => {
-            [[0, 1, 2, 6], [0, 2, 3, 6], [0, 3, 7, 6], [0, 7, 4, 6], [0, 4, 5, 6], [0, 5, 1, 6]]
-                .map(|t| pick(&t))
-                .to_vec()
-        }
-        Pyramid5 | Pyramid13 => {
+        Tetrahedron => [[0, 1, 2, 6], [0, 2, 3, 6], [0, 3, 7, 6], [0, 7, 4, 6], [0, 4, 5, 6], [0, 5, 1, 6]]
+            .map(|t| pick(&t))
+            .to_vec(),
+        Pyramid => {
             mesh.nodes
                 .push(std::array::from_fn(|k| brick.iter().map(|n| mesh.nodes[*n][k]).sum::<f64>() / 8.0));
             let apex = mesh.nodes.len() - 1;
             // A base is seen from inside counter-clockwise.
-            let bases = Hexahedron8.table().sides.iter().map(|(_, side)| {
+            let bases = CellKind::Hexahedron8.table().sides.iter().map(|(_, side)| {
                 let mut base: Vec<usize> = side.iter().rev().map(|k| brick[usize::from(*k)]).collect();
                 base.push(apex);
                 base

@@ -204,7 +204,8 @@ impl RawMesh {
         for RawElement { tag, kind, nodes, groups, offset } in self.elements {
             let n: Vec<usize> = nodes.iter().map(|tag| place_of[known[tag]]).collect();
             let Some(known_kind) = CellKind::of_gmsh(kind) else { continue };
-            let Some(element) = Cell::new(known_kind, &known_kind.from_gmsh(&n)) else { continue };
+            let own = known_kind.table().gmsh.order.from_file(&n);
+            let Some(element) = own.and_then(|own| Cell::new(known_kind, &own)) else { continue };
             let dimension = element.dimension();
             let of: Vec<usize> = groups.into_iter().map(|group| regions.index(dimension, group)).collect();
             // MSH 2.2 lists an element once more for every further group; twice in one group is a fault, found later.

@@ -234,7 +234,8 @@ fn cells_of_every_kind_are_read_and_written() {
     for kind in CellKind::all() {
         let places = kind.reference_coordinates();
         let number: Vec<usize> = (1..=places.len()).collect();
-        let list: Vec<String> = kind.to_gmsh(&number).iter().map(usize::to_string).collect();
+        let list: Vec<String> =
+            kind.table().gmsh.order.to_file(&number).iter().map(usize::to_string).collect();
         let nodes: String =
             places.iter().enumerate().map(|(k, [x, y, z])| format!("{} {x} {y} {z}\n", k + 1)).collect();
         let two = format!(
@@ -242,7 +243,7 @@ fn cells_of_every_kind_are_read_and_written() {
              $Nodes\n{n}\n{nodes}$EndNodes\n$Elements\n1\n1 {gmsh} 2 1 1 {list}\n$EndElements\n",
             d = kind.dimension(),
             n = places.len(),
-            gmsh = kind.table().gmsh,
+            gmsh = kind.table().gmsh.number,
             list = list.join(" "),
         );
         let mesh = parse(two.as_bytes(), "a.msh", 1.0).unwrap_or_else(|error| panic!("{kind:?} {error}"));
