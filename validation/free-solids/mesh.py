@@ -1,5 +1,5 @@
-"""Writes sphere.msh, ring.msh (hexahedra of 27 nodes), cylinder.msh (of 20) and sphere-tetrahedra.msh (of 10, by Gmsh), all in mm.
-The middles of their edges and faces lie on the curved surfaces."""
+"""Writes sphere.msh, ring.msh (hexahedra of 27 nodes), cylinder.msh (of 20), cylinder-8.msh, cylinder-wedges-6.msh, cylinder-wedges-15.msh,
+cylinder-pyramids.msh and sphere-tetrahedra.msh (by Gmsh), all in mm. The middles of edges and faces lie on the curved surfaces."""
 import math
 import sys
 
@@ -7,7 +7,7 @@ sys.path.append("..")
 from hexahedra import Mesh, blend
 
 # CORE: the half edge of the block in the middle, as a part of the radius.
-RADIUS, CORE = 50.0, 0.5
+RADIUS, CORE, LENGTH = 50.0, 0.5, 60.0
 
 
 def sphere():
@@ -41,10 +41,9 @@ def sphere():
     mesh.write("sphere.msh", "sphere")
 
 
-def cylinder():
+def cylinder(name, mesh, around=4, along=7, **regions):
     """Radius 25 mm, length 60 mm: a square in the middle and a block of each of its sides, along z."""
-    radius, length, layers = 25.0, 60.0, 7
-    mesh = Mesh(20)
+    radius, length = 25.0, LENGTH
 
     def core(x, y):
         bulge = 0.2 * max(abs(x), abs(y)) / (math.hypot(x, y) or 1)
@@ -57,7 +56,7 @@ def cylinder():
     def angle(t):
         return math.tan(math.pi / 4 * (2 * t - 1))
 
-    mesh.block((4, 4, layers), lambda u, v, w: (*core(angle(u), angle(v)), length * w))
+    mesh.block((around, around, along), lambda u, v, w: (*core(angle(u), angle(v)), length * w))
     for turn in range(4):
 
         def place(u, v, w, turn=turn):
@@ -66,8 +65,8 @@ def cylinder():
                 x, y = -y, x
             return (*side(x, y, u), length * w)
 
-        mesh.block((2, 4, layers), place)
-    mesh.write("cylinder.msh", "cylinder", bottom=lambda x, y, z: z < 1e-6, top=lambda x, y, z: z > length - 1e-6)
+        mesh.block((around // 2, around, along), place)
+    mesh.write(name, "cylinder", **regions)
 
 
 def ring():
@@ -103,6 +102,10 @@ def tetrahedra():
 
 
 sphere()
-cylinder()
+cylinder("cylinder.msh", Mesh(20), bottom=lambda x, y, z: z < 1e-6, top=lambda x, y, z: z > LENGTH - 1e-6)
+cylinder("cylinder-8.msh", Mesh(8), around=6, along=12)
+cylinder("cylinder-wedges-6.msh", Mesh(6, cells="wedges"), around=6, along=12)
+cylinder("cylinder-wedges-15.msh", Mesh(15, cells="wedges"), along=5)
+cylinder("cylinder-pyramids.msh", Mesh(13, cells="pyramids"), around=2, along=4)
 ring()
 tetrahedra()
