@@ -86,7 +86,7 @@ fn measure(
     // Not steady: the structure has not given way to its end, so that the contact overshoots, opens and closes.
     let displacement = steady.displacement.iter().map(|u| GIVEN_WAY * u).collect();
     let nearly = SteadySliding { displacement, ..steady.clone() };
-    let marched = march(&model, State::at_rest(&model, &nearly), &plan, &(), &mut |marched| {
+    let marched = march(&model, State::at_rest(&model, &nearly)?, &plan, &(), &mut |marched| {
         let step = marched.step;
         if step == 1 || (step >= WARM && (step - WARM).is_multiple_of(block)) {
             ends.push([cpu(), began.elapsed().as_secs_f64()]);

@@ -95,7 +95,7 @@ choices! {
     pub enum StartChoice {
         /// Steady sliding at the velocities and loads of t = 0.
         Steady = "steady",
-        /// Equilibrium without friction: nothing has slid yet.
+        /// Equilibrium without friction: nothing has slid yet. Friction that acts at t = 0 accelerates the structure at once.
         Rest = "rest",
     }
 }

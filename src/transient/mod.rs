@@ -16,6 +16,7 @@ mod effective;
 mod energy_balance;
 mod events;
 mod full_newton;
+mod initial;
 mod interface;
 mod march;
 mod model;

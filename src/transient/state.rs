@@ -56,19 +56,6 @@ impl State {
         state
     }
 
-    /// At rest, displaced by the u of a state without friction: nothing slid yet, and no bristle is bent.
-    pub fn at_rest(model: &TransientModel<'_>, still: &SteadySliding) -> Self {
-        let mut state = State::empty(model);
-        state.motion.col_as_slice_mut(0).copy_from_slice(&still.displacement);
-        state.act(model, 0.0);
-        state.derive(model);
-        state.project(model);
-        let speeds = std::mem::replace(&mut state.speeds, vec![0.0; model.velocities.len()]);
-        state.react(model);
-        state.speeds = speeds;
-        state
-    }
-
     /// Moves along a complex mode: u += Re(s φ), v += Re(s λ φ), a += Re(s λ² φ), with s = `factor`.
     pub fn disturbed(mut self, model: &TransientModel<'_>, lambda: c64, shape: &[c64], factor: f64) -> Self {
         let mut turned = c64::new(factor, 0.0);
@@ -90,7 +77,7 @@ impl State {
     }
 
     /// The motion of the modes that are damped.
-    fn project(&mut self, model: &TransientModel<'_>) {
+    pub(super) fn project(&mut self, model: &TransientModel<'_>) {
         if let (Some(modal), Some(out)) = (&model.damping.modal, &mut self.modal) {
             *out = gram(modal.basis.as_ref(), self.motion.as_ref());
         }

@@ -1,3 +1,4 @@
+mod from_rest;
 mod held_load;
 mod skew;
 mod sticking;

@@ -89,8 +89,7 @@ impl InTime<'_> {
             .loaded(loadings)
             .holding(self.loads(wanted))
             .travelling(tracks.iter().map(Option::as_ref).collect());
-        let begin = if at_rest { State::at_rest } else { State::steady };
-        let mut start = begin(&model, steady);
+        let mut start = if at_rest { State::at_rest(&model, steady)? } else { State::steady(&model, steady) };
         if let (Some(along), Some(wanted)) = (&disturbed, &wanted.disturbance) {
             start = start.disturbed(&model, along.eigenvalue, &along.shape, wanted.amplitude / along.largest);
         }
