@@ -1,6 +1,7 @@
 //! Axes of charts: their values, linear or logarithmic, and labels at round ones.
 
-use super::format::{given, rounded};
+use super::format::rounded;
+use crate::numbers::shortest;
 use std::ops::Range;
 
 /// Values of an axis.
@@ -81,7 +82,8 @@ impl Axis {
                 all.filter(|v| (low..=high).contains(&(self.place(*v)))).collect()
             }
         };
-        values.into_iter().map(|value| (value, tick_label(value))).collect()
+        let labels = tick_labels(&values, self.decades == 0.0 || high - low < 0.7);
+        values.into_iter().zip(labels).collect()
     }
 
     /// Whether its values say something to the reader of the page.
@@ -90,9 +92,14 @@ impl Axis {
     }
 }
 
+/// How far a value may be from its multiple of the step, as a part of it.
+const ROUND_OFF: f64 = 1e-9;
+
+/// The most significant digits of a label.
+const LONGEST: usize = 9;
+
 /// Multiples of 1, 2 or 5 times a power of ten inside a range, `most` about at most.
 fn round_values([low, high]: [f64; 2], most: f64) -> Vec<f64> {
-    const ROUND_OFF: f64 = 1e-9;
     let least = (high - low) / most.max(1.0);
     let power = 10f64.powf(least.log10().floor());
     let step = [1.0, 2.0, 5.0, 10.0]
@@ -105,10 +112,29 @@ fn round_values([low, high]: [f64; 2], most: f64) -> Vec<f64> {
     values.take_while(|value| *value <= high + ROUND_OFF * step).collect()
 }
 
-/// A round value, as short as it can be.
-fn tick_label(value: f64) -> String {
-    let text = given(value);
-    if text.contains('e') { format!("{:e}", rounded(value, 4)).replace('-', "−") } else { text }
+/// Round values, as short as they can be, down to the digit of the step between them where they are `even`. Where that takes too many
+/// digits, those behind the first stand as what is added to it: `1`, `+2e−12`, `+4e−12`.
+fn tick_labels(values: &[f64], even: bool) -> Vec<String> {
+    let step = values.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(f64::INFINITY, f64::min);
+    let power = |x: f64| x.abs().log10().floor();
+    let digits = |value: f64| match power(value) - power(step * (1.0 + ROUND_OFF)) + 1.0 {
+        digits if even && digits.is_finite() => digits.max(1.0) as usize,
+        _ => 1,
+    };
+    let whole = |value: f64, digits: usize| {
+        let text = shortest(value, digits.max(6));
+        if text.contains('e') {
+            format!("{:e}", rounded(value, digits.max(4))).replace('-', "−")
+        } else {
+            text
+        }
+    };
+    let longest = values.iter().map(|value| digits(*value)).max().unwrap_or(0);
+    let label = |(k, value): (usize, &f64)| match k {
+        1.. if longest > LONGEST => format!("+{}", whole(rounded(value - values[0], 3), 3)),
+        _ => whole(*value, digits(*value).min(LONGEST)),
+    };
+    values.iter().enumerate().map(label).collect()
 }
 
 /// The least and the largest of the finite values; infinite where there are none.
@@ -144,6 +170,16 @@ mod tests {
         assert_eq!(labels(Axis::log("", -9.3..1.2, 1.0)), ["1e−8", "1e−6", "0.0001", "0.01", "1"]);
         assert_eq!(labels(Axis::log("", 2.0..3.1, -1.0)), ["−100", "−200", "−500", "−1000"]);
         assert_eq!(labels(Axis::log("", 0.0..0.3, 1.0)), ["1", "1.2", "1.4", "1.6", "1.8"]);
+        // A span that is tiny beside the values.
+        assert_eq!(
+            labels(Axis::new("", 0.999997..1.000001)),
+            ["0.999997", "0.999998", "0.999999", "1", "1.000001"]
+        );
+        assert_eq!(labels(Axis::new("", -12345678.4..-12345676.8))[..2], ["−1.2345678e7", "−1.23456775e7"]);
+        assert_eq!(
+            labels(Axis::new("", 1.0..1.0 + 1e-11)),
+            ["1", "+2e−12", "+4e−12", "+6e−12", "+8e−12", "+1e−11"]
+        );
         assert!(
             labels(Axis::new("", f64::NAN..1.0)).is_empty() && labels(Axis::new("", 1.0..1.0)).is_empty()
         );

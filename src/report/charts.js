@@ -81,8 +81,11 @@ for (const svg of charts) {
 
   const digits = (value, span) => {
     const size = Math.max(Math.abs(value), Math.abs(span));
-    if (value !== 0 && (size >= 1e6 || size < 1e-3)) return value.toExponential(3);
-    return value.toFixed(Math.min(Math.max(Math.ceil(3 - Math.log10(Math.abs(span) || 1)), 0), 9));
+    if (value !== 0 && (size >= 1e6 || size < 1e-3)) {
+      const more = Math.ceil(Math.log10(size / (Math.abs(span) || size)));
+      return value.toExponential(Math.min(3 + more, 15));
+    }
+    return value.toFixed(Math.min(Math.max(Math.ceil(3 - Math.log10(Math.abs(span) || 1)), 0), 15));
   };
   const read = ([from, to, decades], part, name) => {
     const place = from + part * (to - from), value = decades ? decades * 10 ** place : place;

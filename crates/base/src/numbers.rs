@@ -87,7 +87,12 @@ pub fn minus(text: &str) -> String {
 
 /// A value that a person gave: as short as it was written, at most six significant digits.
 pub fn given(value: f64) -> String {
-    let text = significant(value, 6);
+    shortest(value, 6)
+}
+
+/// A value without zeros at its end, of at most so many significant digits.
+pub fn shortest(value: f64, digits: usize) -> String {
+    let text = significant(value, digits);
     let (digits, exponent) = text.split_at(text.find('e').unwrap_or(text.len()));
     let digits = match digits.contains('.') {
         true => digits.trim_end_matches('0').trim_end_matches('.'),
