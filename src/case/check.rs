@@ -2,15 +2,15 @@
 
 use super::consistent::Consistent;
 use super::names::unknown_name;
+use super::structure::PARTS;
 use super::{Case, ContactState, HoldChoice, Parameter, Pressing, TransientAnalysis, path_matches};
 use crate::schema::{Report, dotted, key};
 
 impl Consistent for Case {
     fn check(&self, report: &mut Report) {
         // Tables of named tables without names may have meant to define any name.
-        let sections =
-            ["material", "shell", "bar", "solid", "spring", "force", "contact", "modes", "frf", "measured"];
-        if !sections.iter().any(|section| report.unread_itself(section)) {
+        let others = ["material", "spring", "force", "contact", "modes", "frf", "measured"];
+        if !others.iter().chain(&PARTS).any(|section| report.unread_itself(section)) {
             check_names(report, self);
         }
         super::measured::check(report, self);
@@ -46,14 +46,9 @@ fn check_names(root: &mut Report, case: &Case) {
 /// Materials of parts, and contacts that are given point by point.
 fn check_materials(root: &mut Report, case: &Case) {
     let materials: Vec<&str> = case.material.keys().map(String::as_str).collect();
-    let used = case
-        .shell
-        .iter()
-        .map(|(name, s)| (format!("shell.{}.material", dotted(name)), &s.material))
-        .chain(case.bar.iter().map(|(name, b)| (format!("bar.{}.material", dotted(name)), &b.material)))
-        .chain(case.solid.iter().map(|(name, s)| (format!("solid.{}.material", dotted(name)), &s.material)));
-    for (key, material) in used {
-        if !material.is_empty() && !materials.contains(&material.as_str()) {
+    for (kind, name, material) in case.parts() {
+        if !material.is_empty() && !materials.contains(&material) {
+            let key = format!("{kind}.{}.material", dotted(name));
             unknown_name(root, &key, material, "material", &materials);
         }
     }
@@ -71,11 +66,12 @@ fn check_materials(root: &mut Report, case: &Case) {
 
 /// Parts and contacts of analyses of real modes.
 fn check_modes(root: &mut Report, case: &Case) {
-    let parts = case.shell.keys().chain(case.bar.keys()).chain(case.solid.keys());
-    let parts: Vec<&str> = parts.map(String::as_str).collect();
+    let parts: Vec<&str> = case.parts().map(|(_, name, _)| name).collect();
+    let [others @ .., last] = PARTS;
+    let kinds = format!("{} or {last}", others.join(", "));
     for (name, analysis) in &case.modes {
         for part in analysis.parts.iter().filter(|p| !parts.contains(&p.as_str())) {
-            unknown_name(root, &format!("modes.{}.parts", dotted(name)), part, "shell, bar or solid", &parts);
+            unknown_name(root, &format!("modes.{}.parts", dotted(name)), part, &kinds, &parts);
         }
         if analysis.contact == ContactState::Closed && case.contact.is_empty() {
             root.fault(
@@ -167,22 +163,7 @@ fn check_sensitivity(root: &mut Report, case: &Case, scalars: Option<&[Parameter
 
 /// Checks the keys that a case with matrices excludes, and those that only such a case has.
 fn check_matrices(root: &mut Report, case: &Case) {
-    let built = [
-        ("mesh", case.mesh.is_some()),
-        ("point", !case.point.is_empty()),
-        ("material", !case.material.is_empty()),
-        ("shell", !case.shell.is_empty()),
-        ("bar", !case.bar.is_empty()),
-        ("solid", !case.solid.is_empty()),
-        ("mass", !case.mass.is_empty()),
-        ("spring", !case.spring.is_empty()),
-        ("rigid", !case.rigid.is_empty()),
-        ("averaging", !case.averaging.is_empty()),
-        ("tie", !case.tie.is_empty()),
-        ("support", !case.support.is_empty()),
-        ("force", !case.force.is_empty()),
-    ];
-    for (key, _) in built.into_iter().filter(|(_, there)| *there) {
+    for (key, _) in case.structure().into_iter().filter(|(_, there)| *there) {
         root.fault(
             key,
             "a part of a model",

@@ -20,6 +20,7 @@ mod model;
 mod names;
 mod parameter;
 mod sound;
+mod structure;
 mod test_file;
 #[cfg(test)]
 mod tests;

@@ -2,7 +2,7 @@
 
 use crate::mesh::{Cell, outer_faces};
 use crate::modal::Disc;
-use crate::structure::{Model, Part, PartKind};
+use crate::structure::{Model, Part};
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 
 /// Faces whose normal is nearer than this to the axis, by the cosine, are on a flat side of a solid.
@@ -17,13 +17,13 @@ pub(super) fn discs(model: &Model) -> Vec<(&str, Disc)> {
 
 fn disc(part: &Part, nodes: &[[f64; 3]]) -> Option<Disc> {
     let side;
-    let faces: &[Cell] = match part.kind {
-        PartKind::Shell(_) => &part.cells,
-        PartKind::Solid(_) => {
+    let faces: &[Cell] = match part.kind.dimension() {
+        2 => &part.cells,
+        3 => {
             side = flat_side(part, nodes)?;
             &side
         }
-        PartKind::Bar(_) => return None,
+        _ => return None,
     };
     let pieces: Vec<Vec<usize>> = faces.iter().flat_map(Cell::pieces).collect();
     Disc::recognise(&pieces.iter().map(Vec::as_slice).collect::<Vec<_>>(), nodes)

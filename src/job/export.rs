@@ -100,22 +100,7 @@ fn points_files(prepared: &Prepared) -> BTreeMap<String, String> {
 
 /// The same analyses of the matrices.
 fn as_matrices(case: &Case, matrices: Matrices, points_files: &BTreeMap<String, String>) -> Case {
-    let mut exported = Case {
-        matrices: Some(matrices),
-        mesh: None,
-        prestress: false,
-        point: BTreeMap::new(),
-        material: BTreeMap::new(),
-        shell: BTreeMap::new(),
-        bar: BTreeMap::new(),
-        solid: BTreeMap::new(),
-        mass: BTreeMap::new(),
-        spring: BTreeMap::new(),
-        rigid: BTreeMap::new(),
-        support: BTreeMap::new(),
-        force: BTreeMap::new(),
-        ..case.clone()
-    };
+    let mut exported = Case { matrices: Some(matrices), prestress: false, ..case.without_structure() };
     for (name, contact) in &mut exported.contact {
         contact.points = points_files.get(name).cloned().map(ContactPoints::File);
         (contact.body, contact.counter) = (String::new(), String::new());

@@ -4,7 +4,7 @@ use super::regions::Regions;
 use crate::case::{Axis, Case};
 use crate::error::{Error, Fault, Faults, Result};
 use crate::structure::{
-    ConstraintWords, InclinedSupport, Model, Part, PartKind, RigidLink, Support, check_constraints,
+    ConstraintWords, InclinedSupport, Model, Part, RigidLink, Support, check_constraints,
 };
 use nalgebra::Vector3;
 
@@ -96,10 +96,11 @@ fn about_axis(
 /// Refuses what acts on rotations of nodes that have none: solids take displacements alone.
 pub fn check_turning(case: &Case, regions: &Regions, model: &Model, faults: &mut Faults) {
     let mut turns = vec![true; model.nodes.len()];
-    let (solid, other): (Vec<&Part>, Vec<&Part>) =
-        model.parts.iter().partition(|part| matches!(part.kind, PartKind::Solid(_)));
-    solid.into_iter().flat_map(Part::nodes).for_each(|node| turns[node] = false);
-    other.into_iter().flat_map(Part::nodes).for_each(|node| turns[node] = true);
+    let turn =
+        |part: &&Part| part.element(&model.nodes).is_some_and(|element| element.components().contains(&3));
+    let (turning, others): (Vec<&Part>, Vec<&Part>) = model.parts.iter().partition(turn);
+    others.into_iter().flat_map(Part::nodes).for_each(|node| turns[node] = false);
+    turning.into_iter().flat_map(Part::nodes).for_each(|node| turns[node] = true);
     for link in &model.links {
         std::iter::once(&link.master).chain(&link.slaves).for_each(|node| turns[*node] = true);
     }

@@ -8,7 +8,7 @@ use super::studies::{SHARED, UNCERTAINTY, studies};
 use crate::error::{Error, Result};
 use crate::linalg::sparse::{add_scaled, sum_of_squares};
 use crate::memory::{Available, available};
-use crate::structure::{Model, Part, PartKind, as_plate};
+use crate::structure::{Model, Part, as_plate};
 use std::f64::consts::{PI, TAU};
 
 /// Runs of fewer degrees of freedom fit any machine, with as many modes as they can have: 14 vectors each take 0.4 GiB.
@@ -215,10 +215,10 @@ fn modes_below(model: &Model, hz: f64) -> f64 {
         let k = part.element(&model.nodes).and_then(|element| element.bending_wavenumber(hz)).unwrap_or(0.0);
         k * k * part.area(&model.nodes) / (4.0 * PI)
     };
-    let of = |own: &Part| match &own.kind {
-        PartKind::Shell(_) => part(own),
-        PartKind::Solid(solid) => 0.5 * part(&as_plate(own, solid.material, &model.nodes)),
-        PartKind::Bar(_) => 0.0,
+    let of = |own: &Part| match own.kind.dimension() {
+        3 => 0.5 * part(&as_plate(own, *own.kind.material(), &model.nodes)),
+        2 => part(own),
+        _ => 0.0,
     };
     model.parts.iter().map(of).sum()
 }

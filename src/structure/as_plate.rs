@@ -2,7 +2,8 @@
 
 use super::elements::{WeightedTriangle, split_face};
 use super::material::Material;
-use super::model::{Part, PlateTheory, Shell};
+use super::part::Part;
+use super::properties::{PlateTheory, Shell};
 use crate::mesh::outer_faces;
 use nalgebra::Vector3;
 

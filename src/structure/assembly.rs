@@ -5,7 +5,7 @@ use super::dofs::DofMap;
 use super::elements::{ElementMatrix, FiniteElement};
 use super::material::{Material, RayleighDamping};
 use super::model::Model;
-use super::registry::{AnyElement, elements};
+use super::part::AnyElement;
 use super::scatter::{Couplings, Pattern, Reduction};
 use crate::error::{Error, Fault, Result};
 use crate::linalg::{Engine, SparseMatrix};
@@ -36,7 +36,7 @@ pub struct Assembled {
 /// nodes that exist, elements with an extent, links without circles, supports on nodes that lead).
 pub fn assemble(model: &Model) -> Result<Assembled> {
     check_model(model)?;
-    let elements = elements(model);
+    let elements = model.elements();
     let dofs = DofMap::new(model, &elements)?;
     let couplings = Couplings::new(&dofs, &elements);
     let symbolic = couplings.pattern();
@@ -172,7 +172,7 @@ impl Prestress for GeometricStiffness {
             )));
         }
         let u = self.dofs.expand(displacement);
-        let elements = elements(&self.model);
+        let elements = self.model.elements();
         let couplings = Couplings::new(&self.dofs, &elements);
         let pattern = Pattern { couplings: &couplings, symbolic: self.stiffness.symbolic() };
         let [sum] = pattern.sum([true], |work: &mut Workspace, p, coupled, small| {

@@ -3,8 +3,9 @@
 use super::dofs::DofMap;
 use super::elements::{FlatTriangle, split_face, spring_direction};
 use super::material::Material;
-use super::model::{Bar, Coupling, Model, Part, PartKind, PlateTheory, Shell};
-use super::registry::elements;
+use super::model::{Coupling, Model};
+use super::part::Part;
+use super::properties::{PlateTheory, Shell};
 use crate::error::{Fault, Faults, Result};
 use crate::mesh::{Cell, made_of};
 use crate::numbers::components;
@@ -16,7 +17,7 @@ use std::collections::{BTreeMap, HashMap};
 /// Those of [`assemble`](super::assemble).
 pub fn check(model: &Model) -> Result<()> {
     check_model(model)?;
-    DofMap::new(model, &elements(model)).map(|_| ())
+    DofMap::new(model, &model.elements()).map(|_| ())
 }
 
 /// The faults of `model`, all of them; of like faults in one part the first, with their number.
@@ -51,7 +52,7 @@ fn check_parts(model: &Model, faults: &mut Faults) {
     for part in &model.parts {
         let place = part.place();
         check_material(&place, part.kind.material(), faults);
-        if part.kind.material().orthotropic.is_some() && !matches!(part.kind, PartKind::Solid(_)) {
+        if part.kind.material().orthotropic.is_some() && part.kind.dimension() < 3 {
             let fault = Fault::new(
                 &place,
                 "an orthotropic material",
@@ -61,19 +62,10 @@ fn check_parts(model: &Model, faults: &mut Faults) {
                 "Model the part by solids, `[solid.NAME]`, or leave `orthotropic` out of its material",
             ));
         }
-        match &part.kind {
-            PartKind::Shell(shell) => {
-                positive(&place, "thickness", shell.thickness, "m", faults);
-                check_theory(&place, shell, faults);
-            }
-            PartKind::Bar(Bar { section, .. }) => {
-                positive(&place, "area", section.area, "m²", faults);
-                positive(&place, "first second moment", section.inertia_1, "m⁴", faults);
-                positive(&place, "second second moment", section.inertia_2, "m⁴", faults);
-                positive(&place, "torsion constant", section.torsion, "m⁴", faults);
-            }
-            PartKind::Solid(_) => {}
+        for (what, value, unit) in part.kind.positive() {
+            positive(&place, what, value, unit, faults);
         }
+        part.as_shell().into_iter().for_each(|shell| check_theory(&place, shell, faults));
         let dimension = part.kind.dimension();
         let others = part.cells.iter().filter(|cell| cell.dimension() != dimension).count();
         if others > 0 {
@@ -205,22 +197,8 @@ const SHAPES: &[(Shape, &str, &str, &str)] = &[
 /// Whether the elements of the part can be made of a cell: all triangles of a face have an area and look the same way.
 fn shape(part: &Part, nodes: &[[f64; 3]], cell: &Cell) -> Shape {
     let unusable = || part.elements_on(cell, nodes).iter().any(|e| e.is_degenerate());
-    match part.kind {
-        PartKind::Solid(_) => {
-            if unusable() {
-                Shape::Inverted
-            } else {
-                Shape::Sound
-            }
-        }
-        PartKind::Bar(_) => {
-            if unusable() {
-                Shape::NoLength
-            } else {
-                Shape::Sound
-            }
-        }
-        PartKind::Shell(_) => {
+    match part.kind.dimension() {
+        2 => {
             let split = split_face(cell);
             let triangles: Vec<FlatTriangle> =
                 split.iter().filter_map(|t| FlatTriangle::new(&t.nodes.map(|n| nodes[n]))).collect();
@@ -231,6 +209,9 @@ fn shape(part: &Part, nodes: &[[f64; 3]], cell: &Cell) -> Shape {
             let turned = |n: &[f64; 3]| n.iter().zip(normals[0]).map(|(a, b)| a * b).sum::<f64>() <= 0.0;
             if normals.iter().any(turned) || unusable() { Shape::Folded } else { Shape::Sound }
         }
+        _ if !unusable() => Shape::Sound,
+        3 => Shape::Inverted,
+        _ => Shape::NoLength,
     }
 }
 

@@ -20,7 +20,7 @@ use super::constraints::{Sums, check_unnamed, rigid_rows};
 use super::drilling::Drilling;
 use super::model::Model;
 use super::numbering::node_order;
-use super::registry::AnyElement;
+use super::part::AnyElement;
 use super::spaces::{active_spaces, lead};
 use crate::error::{Error, Fault, Faults, Result};
 use crate::linalg::{SparseVector, c64};

@@ -1,7 +1,7 @@
 //! The rotation about the normal of a membrane where an edge is clamped or follows a rigid body.
 
 use super::elements::{FlatTriangle, split_face};
-use super::model::{Model, PartKind};
+use super::model::Model;
 use crate::mesh::Cell;
 use nalgebra::Vector3;
 
@@ -40,11 +40,7 @@ impl Drilling {
             .filter(|(slave, master)| slave != *master)
             .for_each(|(_, m)| leads[*m] = true);
         let mut turned = vec![false; n];
-        let bars = model
-            .parts
-            .iter()
-            .filter(|part| matches!(part.kind, PartKind::Bar(_)))
-            .flat_map(|part| &part.cells);
+        let bars = model.parts.iter().filter(|part| part.kind.dimension() == 1).flat_map(|part| &part.cells);
         bars.flat_map(Cell::nodes).for_each(|node| turned[*node] = true);
         for spring in model.springs.iter().filter(|spring| spring.rotational) {
             turned[spring.node] = true;

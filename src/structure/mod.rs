@@ -18,7 +18,8 @@ mod imported;
 mod material;
 mod model;
 mod numbering;
-mod registry;
+mod part;
+mod properties;
 #[cfg(test)]
 pub(crate) mod samples;
 mod scatter;
@@ -37,10 +38,9 @@ pub use dofs::{DofMap, FreeDof};
 pub use elements::waves::{thickness_error, thickness_shear_frequency};
 pub use free::{FreePart, free_parts, is_free_along, unresisted_parts};
 pub use material::{Material, Orthotropic, RayleighDamping};
-pub use model::{
-    Bar, Constraint, Coupling, InclinedSupport, Integration, Model, Part, PartKind, PlateTheory, PointMass,
-    RigidLink, Shell, Solid, Spring, Support,
-};
+pub use model::{Constraint, Coupling, InclinedSupport, Model, RigidLink, Support};
+pub use part::{Part, PartKind};
+pub use properties::{Bar, Integration, PlateTheory, PointMass, Shell, Solid, Spring};
 pub use section::Section;
 pub use tie::{Tie, Tied, tied};
 pub use warnings::{ThicknessError, element_size, thickness_errors};

@@ -6,7 +6,7 @@
 
 use super::dofs::DofMap;
 use super::elements::{ElementMatrix, FiniteElement};
-use super::registry::AnyElement;
+use super::part::AnyElement;
 use super::users::users;
 use crate::linalg::SparseMatrix;
 use crate::linalg::sparse::{Index, compressed_pattern};

@@ -2,7 +2,7 @@
 
 use super::constraints::Sums;
 use super::elements::Acting;
-use super::registry::AnyElement;
+use super::part::AnyElement;
 use nalgebra::{SMatrix, SVector};
 use std::collections::BTreeMap;
 

@@ -17,7 +17,9 @@
 //! * the edge of a shell on a shell: u_s and all of θ_s = θ̄.
 
 use super::elements::{FacePoint, FlatTriangle, split_face};
-use super::model::{Constraint, Part, PartKind, PlateTheory};
+use super::model::Constraint;
+use super::part::Part;
+use super::properties::PlateTheory;
 use crate::mesh::{Cell, FaceTree, LocatedPoint, cell_nodes};
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
@@ -112,10 +114,10 @@ pub fn tied(tie: &Tie<'_>) -> Tied {
             found.largest_gap = found.largest_gap.max(gap);
         }
         let slave = Slave { node, x, normal, half };
-        let rows = match (&tie.slave.kind, is_edge) {
-            (PartKind::Shell(_), true) => slave.edge(&surface),
-            (PartKind::Shell(_), false) => slave.face(&surface, arm),
-            _ => slave.translations(surface.motion(x)),
+        let rows = match (tie.slave.as_shell(), is_edge) {
+            (Some(_), true) => slave.edge(&surface),
+            (Some(_), false) => slave.face(&surface, arm),
+            (None, _) => slave.translations(surface.motion(x)),
         };
         found.constraints.extend(rows.into_iter().map(|(component, form)| constraint(node, component, form)));
     }
@@ -227,9 +229,9 @@ impl Master<'_> {
         let share = 1.0 / feet.len().max(1) as f64;
         let mut sum = Motion::default();
         for foot in &feet {
-            let own = match self.tie.master.kind {
-                PartKind::Shell(_) => self.on_shell(foot),
-                _ => self.on_solid(foot),
+            let own = match self.tie.master.as_shell() {
+                Some(_) => self.on_shell(foot),
+                None => self.on_solid(foot),
             };
             let way = p - Vector3::from(foot.position);
             // Of a solid without a gap the rotation has no arm, and does not count.

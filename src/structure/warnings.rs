@@ -2,7 +2,8 @@
 
 use super::elements::waves::thickness_shear_frequency;
 use super::elements::{FlatTriangle, split_face};
-use super::model::{Model, Part};
+use super::model::Model;
+use super::part::Part;
 
 /// A plate of the model and by how much its frequencies are expected to be too high.
 #[derive(Debug, Clone, PartialEq)]

@@ -75,7 +75,7 @@ fn what_talks_to_mpi_knows_linear_algebra_only() {
     }
 }
 
-fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
+pub(super) fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).expect("a folder of the crate").flatten() {
         let path = entry.path();
         if path.is_dir() {

@@ -14,6 +14,7 @@ mod constraints;
 mod curved;
 mod elements;
 mod joined;
+mod kinds;
 mod matrices;
 mod measured;
 mod meshes;

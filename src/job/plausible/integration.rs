@@ -3,11 +3,11 @@
 use crate::error::Fault;
 use crate::mesh::CellKind;
 use crate::schema::dotted;
-use crate::structure::{Integration, Model, PartKind};
+use crate::structure::{Integration, Model};
 
 pub fn warnings(model: &Model) -> Vec<Fault> {
     let warning = |part: &crate::structure::Part| {
-        let PartKind::Solid(solid) = &part.kind else { return None };
+        let solid = part.as_solid()?;
         let others = part.cells.iter().filter(|cell| cell.kind() != CellKind::Hexahedron20).count();
         (solid.integration == Integration::Reduced && others > 0).then(|| {
             let place = format!("`solid.{}.integration`", dotted(&part.name));

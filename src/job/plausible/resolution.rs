@@ -8,7 +8,7 @@ use super::frequency::highest_frequency;
 use crate::error::Fault;
 use crate::job::prepared::Prepared;
 use crate::numbers::significant;
-use crate::structure::{Part, PartKind, as_plate, element_size};
+use crate::structure::{Part, as_plate, element_size};
 use std::f64::consts::TAU;
 
 /// Elements of first order a wave, at least; half as many of second order, which have as many nodes.
@@ -21,9 +21,10 @@ pub fn warnings(prepared: &Prepared) -> Vec<Fault> {
         .iter()
         .filter_map(|part| {
             let hz = highest_frequency(prepared, &part.name);
-            match &part.kind {
-                PartKind::Solid(solid) => {
-                    of_part(&as_plate(part, solid.material, &model.nodes), &part.place(), &model.nodes, hz)
+            match part.kind.dimension() {
+                3 => {
+                    let plate = as_plate(part, *part.kind.material(), &model.nodes);
+                    of_part(&plate, &part.place(), &model.nodes, hz)
                 }
                 _ => of_part(part, &part.place(), &model.nodes, hz),
             }

@@ -7,7 +7,7 @@ use crate::job::discs::flat_sides;
 use crate::job::prepared::Prepared;
 use crate::mesh::Cell;
 use crate::sound::{Acoustics, Air, Surface};
-use crate::structure::{Part, PartKind};
+use crate::structure::Part;
 
 const PLACE: &str = "`transient.sound.plates`";
 
@@ -21,9 +21,9 @@ pub fn acoustics(prepared: &Prepared<'_>, wanted: &SoundAnalysis) -> Result<Acou
     if wanted.plates.is_empty() {
         for part in &prepared.model.parts {
             // Of all solids those are heard that have flat sides.
-            let all = faults.take(of_part(prepared, part).or_else(|error| match part.kind {
-                PartKind::Shell(_) => Err(error),
-                _ => Ok(Vec::new()),
+            let all = faults.take(of_part(prepared, part).or_else(|error| match part.as_shell() {
+                Some(_) => Err(error),
+                None => Ok(Vec::new()),
             }));
             heard.extend(all.unwrap_or_default());
         }
@@ -34,7 +34,7 @@ pub fn acoustics(prepared: &Prepared<'_>, wanted: &SoundAnalysis) -> Result<Acou
     }
     for name in &wanted.plates {
         let found = match prepared.model.part(name) {
-            Some(part) if !matches!(part.kind, PartKind::Bar(_)) => of_part(prepared, part),
+            Some(part) if part.kind.dimension() > 1 => of_part(prepared, part),
             _ => of_region(prepared, name).map(|heard| vec![heard]),
         };
         heard.extend(faults.take(found).unwrap_or_default());
@@ -90,8 +90,8 @@ fn of_part(prepared: &Prepared<'_>, part: &Part) -> Result<Vec<Heard>> {
     if part.as_shell().is_some() {
         return surface(prepared, part, &part.name, &part.cells).map(|heard| vec![heard]);
     }
-    let sides = match part.kind {
-        PartKind::Solid(_) => flat_sides(part, &prepared.model.nodes),
+    let sides = match part.kind.dimension() {
+        3 => flat_sides(part, &prepared.model.nodes),
         _ => Default::default(),
     };
     let sides = ["front", "back"].into_iter().zip(sides).filter(|(_, faces)| !faces.is_empty());

@@ -1,8 +1,8 @@
 //! Elements: from coordinates and material to small symmetric matrices.
 //!
 //! The rest of the program knows an element as a [`FiniteElement`]: nodes, freedoms, matrices of any size, the displacement
-//! at a point of its face, the range of its theory. A new one is a file here, and a line in `structure/registry.rs`, which says what
-//! of a model it stands for.
+//! at a point of its face, the range of its theory. A new one is a file here; `structure/part.rs` says what part of a
+//! model it stands for.
 //!
 //! | element | what it is | freedoms | file |
 //! |---|---|---|---|
