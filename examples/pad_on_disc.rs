@@ -61,7 +61,7 @@ fn main() -> stridor::error::Result<()> {
         Surfaces::new("face", &model.nodes, [pad, disc], ContactSide::Face(&pad.cells), [0.0, 1.0, 0.0]);
     let pair = ContactPair {
         name: "face".into(),
-        points: pair_surfaces(&surfaces, &|entries| assembled.dofs.reduce(entries))?,
+        points: pair_surfaces(&surfaces, &|entries| assembled.dofs.reduce(entries))?.into(),
         law: Arc::new(SlidingLaw::new(NormalLaw::linear(100e9), Falling, 0.0)),
         closing: Closing::Load(500.0),
         sliding_velocity: 0.2,

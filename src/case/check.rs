@@ -15,7 +15,7 @@ impl Consistent for Case {
         }
         super::measured::check(report, self);
         let sound = report.is_sound(&["sensitivity", "sweep", "map", "uncertainty", "calibrate"]);
-        let scalars = sound.then(|| self.without_studies().parameters());
+        let scalars = (sound && self.has_studies()).then(|| self.without_studies().parameters());
         check_sensitivity(report, self, scalars.as_deref());
         super::explore::check(self, scalars.as_deref(), report);
         super::uncertainty::check(self, scalars.as_deref(), report);
@@ -146,9 +146,7 @@ fn check_courses(root: &mut Report, case: &Case, transient: &TransientAnalysis) 
 /// Refuses patterns that name no scalar of a case that is valid but for them.
 fn check_sensitivity(root: &mut Report, case: &Case, scalars: Option<&[Parameter]>) {
     let (Some(analysis), Some(parameters)) = (&case.sensitivity, scalars) else { return };
-    // What is asked about the scalars is none of them.
-    let paths =
-        || parameters.iter().map(|p| p.path.as_str()).filter(|path| !path.starts_with("sensitivity."));
+    let paths = || parameters.iter().map(|p| p.path.as_str());
     for pattern in
         analysis.parameters.iter().filter(|pattern| !paths().any(|path| path_matches(pattern, path)))
     {

@@ -44,6 +44,7 @@ pub use model::{
     Averaging, Axis, Bar, Force, Held, Mass, Profile, Rigid, Shell, Solid, SpringPer, SpringSet,
     StructureDamping, Tie,
 };
+pub use parameter::VariedCase;
 pub(crate) use parameter::path_matches;
 pub use sound::{AirChoice, Microphone, ON_AXIS, SoundAnalysis};
 pub use test_file::read_test;
@@ -173,14 +174,18 @@ impl Case {
         Ok(case)
     }
 
-    /// The same case without what names scalars of it: sweeps, maps, uncertain scalars, calibration.
+    /// The same case without what names scalars of it, as each point of a sweep is: sweeps, maps, uncertain scalars, sensitivities,
+    /// calibration.
     pub fn without_studies(&self) -> Case {
-        Case { calibrate: None, ..self.without_sweeps() }
+        let (sweep, map, uncertainty) = Default::default();
+        Case { sweep, map, uncertainty, sensitivity: None, calibrate: None, ..self.clone() }
     }
 
-    /// The same case without its sweeps, maps and uncertain scalars, as each of their points is.
-    pub fn without_sweeps(&self) -> Case {
-        Case { sweep: BTreeMap::new(), map: BTreeMap::new(), uncertainty: BTreeMap::new(), ..self.clone() }
+    /// Whether something in it names scalars of it.
+    fn has_studies(&self) -> bool {
+        let Case { sweep, map, uncertainty, .. } = self;
+        let none = sweep.is_empty() && map.is_empty() && uncertainty.is_empty();
+        !none || self.sensitivity.is_some() || self.calibrate.is_some()
     }
 
     /// The case as TOML in SI units with every default written out.

@@ -4,6 +4,7 @@ use super::{Case, Invalidates, Parameter};
 use crate::error::{Error, Fault, Faults, Result, nearest};
 use crate::schema::units::{dimension_of, parse_quantity};
 use crate::schema::{Report, check, scalar, scalars, set_scalar};
+use std::sync::{Mutex, PoisonError};
 
 impl Case {
     /// Every scalar of the case, in the order of the declarations.
@@ -54,21 +55,67 @@ impl Case {
     /// A path that is not a number of the case (with the nearest one that is), or a value that the case refuses.
     pub fn with_parameter(&self, path: &str, value: f64) -> Result<Case> {
         let mut case = self.clone();
-        if !set_scalar(&mut case, path, value) {
-            self.parameter(path)?;
-        }
-        let mut report = Report::default();
-        check(&mut case, &mut report);
-        let named = |fault: Fault| Fault { place: format!("{path} = {value} {}", fault.place), ..fault };
-        Faults(report.into_faults().into_iter().map(named).collect()).into_result(case)
+        case.set([(path, value)])?;
+        Ok(case)
     }
 
-    /// The same case with the scalars at some paths set to values \[SI\], one after the other.
+    /// The same case with the scalars at some paths set to values \[SI\].
     ///
     /// # Errors
     /// As [`Case::with_parameter`].
     pub fn with_parameters<'a>(&self, values: impl IntoIterator<Item = (&'a String, f64)>) -> Result<Case> {
-        values.into_iter().try_fold(self.clone(), |case, (path, value)| case.with_parameter(path, value))
+        let mut case = self.clone();
+        case.set(values.into_iter().map(|(path, value)| (path.as_str(), value)))?;
+        Ok(case)
+    }
+
+    /// Sets the scalars at some paths to values \[SI\], which it then has, accepted or not.
+    fn set<'a>(&mut self, values: impl IntoIterator<Item = (&'a str, f64)>) -> Result<()> {
+        let mut given = Vec::new();
+        for (path, value) in values {
+            if !set_scalar(self, path, value) {
+                self.parameter(path)?;
+            }
+            given.push(format!("{path} = {value}"));
+        }
+        let mut report = Report::default();
+        check(self, &mut report);
+        let named = |fault: Fault| Fault { place: format!("{} {}", given.join(", "), fault.place), ..fault };
+        Faults(report.into_faults().into_iter().map(named).collect()).into_result(())
+    }
+}
+
+/// A case whose scalars at some paths are set to other and other values: its copies, as many as are at work at once, are used again.
+#[derive(Debug)]
+pub struct VariedCase {
+    case: Case,
+    paths: Vec<String>,
+    idle: Mutex<Vec<Case>>,
+}
+
+impl VariedCase {
+    /// `case` with the scalars at `paths` to be varied.
+    pub fn new(case: Case, paths: Vec<String>) -> Self {
+        VariedCase { case, paths, idle: Mutex::default() }
+    }
+
+    /// Where the scalars are that are varied.
+    pub fn paths(&self) -> &[String] {
+        &self.paths
+    }
+
+    /// What `work` finds of the case with the values `at` \[SI\].
+    ///
+    /// # Errors
+    /// As [`Case::with_parameter`], and those of `work`.
+    pub fn at<T>(&self, at: &[f64], work: impl FnOnce(&Case) -> Result<T>) -> Result<T> {
+        let idle = || self.idle.lock().unwrap_or_else(PoisonError::into_inner);
+        let own = idle().pop();
+        let mut case = own.unwrap_or_else(|| self.case.clone());
+        case.set(self.paths.iter().map(String::as_str).zip(at.iter().copied()))?;
+        let found = work(&case);
+        idle().push(case);
+        found
     }
 }
 
@@ -84,7 +131,28 @@ pub(crate) fn path_matches(pattern: &str, path: &str) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::path_matches;
+    use super::{VariedCase, path_matches};
+    use crate::case::Case;
+
+    /// Places one after another give the cases that each of them gives by itself, on one copy; a refused one leaves nothing behind, and
+    /// scalars that go together are set before they are checked.
+    #[test]
+    fn a_varied_case_is_the_case_with_its_parameters() {
+        let text = include_str!("../../validation/rig/case.toml").replace(
+            "friction = { law = \"exponential\", mu0 = 0.6, mu1 = 0.1, alpha = \"1 s/m\" }",
+            "friction = { law = \"table\", velocity = [0, 1], mu = [[0.5, 0.4]] }",
+        );
+        let case = Case::parse("case", &text, ".".into()).unwrap().without_studies();
+        let paths = [0, 1].map(|k| format!("contact.rim.friction.velocity.{k}"));
+        let varied = VariedCase::new(case.clone(), paths.to_vec());
+        for at in [[0.5, 0.7], [2.0, 3.0], [0.9, 0.8], [0.5, 0.6]] {
+            let sound = at[0] < at[1];
+            let expected = case.with_parameters(paths.iter().zip(at)).map_err(|error| error.to_string());
+            let found = varied.at(&at, |case| Ok(case.clone())).map_err(|error| error.to_string());
+            assert!(found == expected && found.is_ok() == sound, "{at:?}: {found:?}");
+            assert_eq!(varied.idle.lock().unwrap().len(), usize::from(sound));
+        }
+    }
 
     #[test]
     fn patterns_match_as_people_expect() {

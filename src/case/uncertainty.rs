@@ -91,7 +91,7 @@ mod tests {
         let load = study.parameter["load"].distribution();
         assert_eq!(load, Distribution { between: [1.0, 3.0], normal: None, log: true });
         assert_eq!(Case::parse("again", &case.to_toml(), ".".into()).unwrap(), case);
-        assert!(case.without_sweeps().uncertainty.is_empty());
+        assert!(case.without_studies().uncertainty.is_empty());
     }
 
     #[test]

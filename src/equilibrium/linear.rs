@@ -97,7 +97,7 @@ pub fn closed_structure(system: &System, steady: &SteadySliding) -> Result<Struc
 pub fn contact_force(system: &System, approach: &[f64], displacement: &[f64], velocity: &[f64]) -> Vec<f64> {
     let mut total = vec![0.0; system.n_dofs()];
     for (pair, approach) in system.pairs.iter().zip(approach) {
-        for point in &pair.points {
+        for point in &*pair.points {
             let [g, t1, t2] = directions(point);
             let motion = ContactMotion {
                 penetration: approach - point.gap + g.dot(displacement),

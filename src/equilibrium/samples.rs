@@ -48,7 +48,13 @@ pub(crate) fn pair(
     closing: Closing,
     velocity: f64,
 ) -> ContactPair {
-    ContactPair { name: "pair".into(), points, law: Arc::new(law), closing, sliding_velocity: velocity }
+    ContactPair {
+        name: "pair".into(),
+        points: points.into(),
+        law: Arc::new(law),
+        closing,
+        sliding_velocity: velocity,
+    }
 }
 
 /// Random skew parts of full rank, gyroscopic of the size `spin` and circulatory of the size `friction`.

@@ -2,10 +2,12 @@
 
 use super::analyses::{Planned, Selection};
 use super::known::KnownAnswers;
+#[cfg(feature = "cli")]
+use super::operating_point::OperatingPoint;
 use super::plausible;
 use super::prepared::Prepared;
 use super::pressed;
-use super::run::{OperatingPoint, Run};
+use super::run::Run;
 use super::singular::explained;
 use super::sink::{Memory, ResultSink, ResultStage};
 use crate::equilibrium;

@@ -5,6 +5,7 @@ use super::clock::Clock;
 use super::modes::{
     check_damping_frequencies, damped_below, identify, labels, modal_damping, real_modes_below,
 };
+use super::operating_point::OperatingPoint;
 use super::prepared::Prepared;
 use crate::case::CeaAnalysis;
 use crate::equilibrium::{self, SteadySliding};
@@ -17,6 +18,7 @@ use crate::stability::{band_around, band_expected, keep_nearest};
 use crate::system::{Structure, System};
 use std::borrow::Cow;
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 /// Floating-point operations of a certificate that is not requested explicitly, one that takes at most half as many as the
 /// eigenvalues aside: two seconds of one core.
@@ -78,28 +80,26 @@ pub fn band_modes<'a>(
     Ok((found, system))
 }
 
-/// Complex eigenvalues at the steady state, with the system they belong to (its modal damping in it) and the real modes
-/// of the whole, which `basis` gives where they are known already. Left vectors are kept where `left_vectors` or the case asks
-/// for them.
+/// Complex eigenvalues at the steady state, and the operating point that they belong to; `basis` is the real modes of the whole where they
+/// are known already. Left vectors are kept where `left_vectors` or the case asks for them.
 pub fn complex_result<'a>(
-    at: (&'a Prepared, &SteadySliding),
+    (prepared, steady): (&'a Prepared, Arc<SteadySliding>),
     cea: &CeaAnalysis,
     basis: Option<RealModes>,
     left_vectors: bool,
     clock: &mut Clock,
     observer: &dyn Observer,
-) -> Result<(ComplexResult, Cow<'a, System>, RealModes)> {
-    let (found, system) = band_modes(at, cea, basis, left_vectors, clock, observer)?;
-    let (prepared, state) = at;
-    let BandModes { band, basis, modes, certificate } = found;
+) -> Result<(ComplexResult, OperatingPoint<'a>)> {
+    let (found, system) = band_modes((prepared, &steady), cea, basis, left_vectors, clock, observer)?;
+    let BandModes { band, basis: real, modes, certificate } = found;
     let asked = Band { hz: band, nearest: cea.nearest.zip(cea.count), left_vectors: false };
     let confirmation = match cea.confirm {
         true => Some(
-            clock.time("second method", || stability::confirm(&system, state, &modes, asked, observer))?,
+            clock.time("second method", || stability::confirm(&system, &steady, &modes, asked, observer))?,
         ),
         false => None,
     };
-    let labels = labels(&identify(prepared, &basis, &prepared.assembled), &basis);
+    let labels = labels(&identify(prepared, &real, &prepared.assembled), &real);
     let participation = modes
         .modes
         .iter()
@@ -121,7 +121,7 @@ pub fn complex_result<'a>(
         confirmation,
         modes,
     };
-    Ok((complex, system, basis))
+    Ok((complex, OperatingPoint { prepared, steady, system, real }))
 }
 
 /// Input of a complex eigenvalue analysis.
@@ -296,7 +296,8 @@ mod tests {
             let path = "shell.disc.thickness".to_string();
             let at = 1.1 * case.parameter(&path).unwrap().value;
             let expected = eigenvalues(&case.with_parameter(&path, at).unwrap());
-            let found = Whole::new(&case, vec![path], None).eigenvalues(&[at]).unwrap();
+            let found = Whole::new(&Prepared::new(&case).unwrap(), vec![path], None).eigenvalues(&[at]);
+            let found = found.unwrap();
             assert_eq!(expected.len(), count);
             assert_eq!(found, expected);
         }

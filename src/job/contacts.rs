@@ -41,7 +41,7 @@ pub fn contact_pairs(
         if let (Some(points), Some(law)) = (points, law) {
             pairs.push(ContactPair {
                 name: name.clone(),
-                points,
+                points: points.into(),
                 law: Arc::new(law),
                 closing: closing(contact),
                 sliding_velocity: contact.sliding_velocity,
@@ -247,9 +247,27 @@ pub fn arrows(contact: &Contact, regions: &Regions, model: &Model, points: &[Con
 
 #[cfg(test)]
 mod tests {
+    use super::{Arc, with_laws};
     use crate::bounds::{Origin::*, within};
     use crate::case::Case;
     use crate::job::Prepared;
+    use crate::job::scalars::scalar;
+
+    /// Neighbouring systems and members of sweeps have the directions of the contact points of the case itself, not copies of them.
+    #[test]
+    fn systems_that_differ_in_laws_share_their_contact_points() {
+        let text = include_str!("../../validation/rig-coarse/case.toml");
+        let case = Case::parse("rig", text, std::path::PathBuf::new()).unwrap();
+        let prepared = Prepared::new(&case).unwrap();
+        for path in ["contact.rim.friction.mu0", "contact.rim.sliding_velocity", "contact.rim.load"] {
+            let own = case.parameter(path).unwrap().value;
+            let neighbour = scalar(&case, path).unwrap().unwrap().system_at(&prepared, 1.1 * own).unwrap();
+            let member = with_laws(&prepared.system.pairs, &case.with_parameter(path, 1.1 * own).unwrap());
+            for pairs in [&neighbour.pairs, &member.unwrap()] {
+                assert!(Arc::ptr_eq(&pairs[0].points, &prepared.system.pairs[0].points), "{path}");
+            }
+        }
+    }
 
     /// A stiffness per area or length counts the area of the faces or the length of the lines that touch the ground, one per point the region.
     #[test]

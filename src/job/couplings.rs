@@ -69,7 +69,8 @@ fn tie_of(
     warnings: &mut Vec<String>,
 ) -> Result<Coupling> {
     let place = format!("tie.{name}");
-    let [own, other] = [&tie.on, &tie.to].map(|side| mean_size(side, regions, model));
+    let (found, sides) = projected(&place, [&tie.on, &tie.to], tie.within, (regions, model), warnings)?;
+    let [own, other] = sides.map(|faces| mean_size(&faces, model));
     if let (Some(own), Some(other)) = (own, other)
         && own > COARSE * other
     {
@@ -81,7 +82,6 @@ fn tie_of(
             tie.to
         ));
     }
-    let found = projected(&place, [&tie.on, &tie.to], tie.within, (regions, model), warnings)?;
     if found.largest_gap > 0.0 {
         warnings.push(format!(
             "`{place}`: gaps up to {} m between \"{}\" and `{}` are kept, and bridged rigidly",
@@ -96,22 +96,22 @@ fn tie_of(
 /// Faces of a surface that follows may be so much larger than those of the other.
 const COARSE: f64 = 1.2;
 
-/// √(mean area) of the faces of a surface \[m\], of half that of second order, which have a node in the middle of each side.
-fn mean_size(name: &str, regions: &Regions, model: &Model) -> Option<f64> {
-    let faces = counter_faces(name, regions, model, ("", "")).ok()?.faces;
-    let area: f64 = tributary(&model.nodes, &faces).iter().sum();
+/// √(mean area) of faces \[m\], of half that of second order, which have a node in the middle of each side; none of lines.
+fn mean_size(faces: &[Cell], model: &Model) -> Option<f64> {
+    let area: f64 = tributary(&model.nodes, faces).iter().sum();
     let sides = faces.iter().map(|face| if face.kind().is_first_order() { 1.0 } else { 4.0 });
-    Some((area / sides.sum::<f64>()).sqrt()).filter(|size| size.is_finite())
+    let size = (area / sides.sum::<f64>()).sqrt();
+    (size.is_finite() && faces.iter().all(|face| face.dimension() == 2)).then_some(size)
 }
 
-/// The surface `on`, projected on the surface `to`; `warnings` say which nodes are too far away.
+/// The surface `on`, projected on the surface `to`, and the cells of both; `warnings` say which nodes are too far away.
 fn projected(
     place: &str,
     [on, to]: [&str; 2],
     within: Option<f64>,
     (regions, model): (&Regions, &Model),
     warnings: &mut Vec<String>,
-) -> Result<Tied> {
+) -> Result<(Tied, [Vec<Cell>; 2])> {
     let at = |key: &str| format!("`{place}.{key}`");
     let mut faults = Faults::new();
     let surface = faults.take(surface(&at("on"), on, regions, model));
@@ -154,7 +154,7 @@ fn projected(
             components(model.nodes[*node])
         ));
     }
-    Ok(found)
+    Ok((found, [cells, faces]))
 }
 
 /// The cells of a region of faces on one shell or solid, or of lines on one shell, and that part.
@@ -213,7 +213,7 @@ fn area_springs(
     let nodes = regions.mesh.region_nodes(region);
     let mut ends: Vec<(usize, Option<usize>)> = nodes.iter().map(|node| (*node, None)).collect();
     if let Some(to) = &set.to {
-        let found = projected(&place, [&set.on, to], None, (regions, model), warnings)?;
+        let (found, _) = projected(&place, [&set.on, to], None, (regions, model), warnings)?;
         let mut far = BTreeMap::new();
         for node in &found.following {
             far.insert(*node, model.nodes.len());

@@ -1,24 +1,19 @@
 //! The sweeps and maps of a case, and what its damping decides; what all its studies start from.
 
-use super::known::{KnownAnswers, Reference};
-use super::modes::add_modal_damping;
-use super::prepared::Prepared;
+use super::known::KnownAnswers;
+use super::operating_point::OperatingPoint;
 use super::sink::ResultStage;
-use super::states::{OnFamily, States, Whole, keeps_the_structure};
-use super::studies::{SHARED, Study, between, studies};
-use crate::case::{Case, Invalidates, MapAnalysis, SweepAnalysis};
-use crate::equilibrium::{Condensed, SteadySliding, tangent_stiffness};
+use super::states::{OnFamily, RATIO, Start, States, Whole, keeps_the_structure};
+use super::studies::{Study, between};
+use crate::case::{Case, MapAnalysis, SweepAnalysis};
 use crate::error::{Error, Result};
 use crate::linalg::c64;
-use crate::modal::RealModes;
 use crate::progress::Observer;
 use crate::results::{DampingRow, DampingVerdicts, MapResult, RunResults, SweepMethod, SweepResult};
-use crate::stability::{ClosedContact, Family, FamilyFrame, SlidingState};
+use crate::stability::{Family, FamilyFrame, SlidingState};
 use crate::sweep::{
     self, Answered, Axis, Boundary, Checked, CriticalKind, MapPoint, MeasuredProblem, SweepProblem,
 };
-use crate::system::{Damping, System};
-use std::f64::consts::TAU;
 
 /// The largest |Δλ|/|λ| at full order that is accepted.
 pub(super) const ACCURACY: f64 = 1e-8;
@@ -28,26 +23,14 @@ const LOCATED: [f64; 2] = [1e-10, 1e-7];
 const BOUNDARY: [f64; 2] = [1e-7, 1e-6];
 /// Full-order measures that were not good enough lead to a richer family, so often at most.
 pub(super) const REFINEMENTS: usize = 3;
-/// The path of ζ.
-const RATIO: &str = "damping.modal_ratio";
-
-/// The case at its own values: what every study starts from.
-pub(super) struct Nominal<'a> {
-    pub(super) prepared: &'a Prepared<'a>,
-    /// With the modal damping.
-    pub(super) system: &'a System,
-    pub(super) steady: &'a SteadySliding,
-    pub(super) real: &'a RealModes,
-}
-
 /// Runs the studies of the case that one analysis takes, and hands each on when it is there.
 pub(super) type Studies<'a> = dyn Fn(&Explorer, &mut RunResults, &mut RecordStage) -> Result<()> + 'a;
 /// Takes results as they are there.
 pub(super) type RecordStage<'a> = dyn FnMut(ResultStage) -> Result<()> + 'a;
 
-/// Runs `studies` of the case at `nominal`.
+/// Runs `studies` of the case whose own values are at `nominal`.
 pub(super) fn explore(
-    nominal: &Nominal,
+    nominal: &OperatingPoint,
     studies: &Studies,
     known: &KnownAnswers,
     results: &mut RunResults,
@@ -60,61 +43,6 @@ pub(super) fn explore(
         Explorer::new(&start, known, observer).and_then(|explorer| studies(&explorer, results, record));
     // Beside their reference nothing that is found is a fault of what is known.
     explored.map_err(Error::while_computing)
-}
-
-/// Every damping scalar that a study or the verdicts vary: path, its value, another value that the case accepts.
-fn dampings(whole: &Case, case: &Case) -> Result<Vec<(String, f64, f64)>> {
-    let mut found: Vec<(String, f64, f64)> = Vec::new();
-    let all = SHARED.into_iter().flat_map(|analysis| studies(whole, analysis));
-    for (path, ends) in all.flat_map(|study| study.paths.into_iter().zip(study.bounds)) {
-        let parameter = case.parameter(&path)?;
-        let known = found.iter().any(|(other, ..)| *other == path);
-        if parameter.invalidates == Invalidates::Damping && keeps_the_structure(case, &path)? && !known {
-            let other = if ends[0] == parameter.value { ends[1] } else { ends[0] };
-            found.push((path, parameter.value, other));
-        }
-    }
-    let ratio = case.damping.modal_ratio;
-    if ratio > 0.0 && !found.iter().any(|(path, ..)| path == RATIO) {
-        found.push((RATIO.into(), ratio, 0.5 * ratio));
-    }
-    Ok(found)
-}
-
-/// The damping of the structure with one scalar at its other value.
-fn other_damping(nominal: &Nominal, case: &Case, (path, _, value): &(String, f64, f64)) -> Result<Damping> {
-    let case = case.with_parameter(path, *value)?;
-    let mut structure = Prepared::new(&case)?.system.structure.clone();
-    add_modal_damping(&mut structure, nominal.real, &case)?;
-    Ok(structure.damping)
-}
-
-/// Data that all studies of a case start from.
-pub(super) struct Start<'a> {
-    nominal: &'a Nominal<'a>,
-    /// Without its sweeps.
-    case: Case,
-    condensed: Condensed,
-    /// The structure with its contact closed, where that has many points.
-    closed: Option<ClosedContact>,
-    dampings: Vec<(String, f64, f64)>,
-    /// The damping of the structure with each of them at its other value.
-    others: Vec<Damping>,
-    pub(super) reference: Reference,
-}
-
-impl<'a> Start<'a> {
-    pub(super) fn new(nominal: &'a Nominal<'a>) -> Result<Self> {
-        let case = nominal.prepared.case.without_sweeps();
-        let dampings = dampings(nominal.prepared.case, &case)?;
-        let others = dampings.iter().map(|d| other_damping(nominal, &case, d)).collect::<Result<_>>()?;
-        let k = tangent_stiffness(nominal.system, &nominal.steady.displacement)?;
-        let condensed = Condensed::new(nominal.system, &k)?;
-        let reference = Reference::new(nominal.system, nominal.real);
-        let top = TAU * case.cea.as_ref().expect("a case with complex modes").band[1];
-        let closed = ClosedContact::of((nominal.system, nominal.steady), nominal.real, top, &())?;
-        Ok(Start { nominal, case, condensed, closed, dampings, others, reference })
-    }
 }
 
 /// The problem of a study.
@@ -149,7 +77,6 @@ impl Problem<'_> {
 
 pub(super) struct Explorer<'a> {
     start: &'a Start<'a>,
-    nominal: &'a Nominal<'a>,
     /// Without its studies.
     pub(super) case: &'a Case,
     frame: FamilyFrame<'a>,
@@ -163,22 +90,23 @@ impl<'a> Explorer<'a> {
         known: &'a KnownAnswers<'a>,
         observer: &'a dyn Observer,
     ) -> Result<Self> {
-        let Start { nominal, case, .. } = start;
-        let cea = case.cea.as_ref().expect("a case with complex modes");
-        let displacement = &nominal.steady.displacement;
-        let others = start.others.iter().collect();
+        let (Start { nominal, case, .. }, others) = (start, start.others.iter().collect());
+        let band = case.cea.as_ref().expect("a case with complex modes").band;
         let frame = match &start.closed {
-            Some(closed) => FamilyFrame::closed(closed, others, cea.band)?,
-            None => FamilyFrame::new(nominal.system, displacement, nominal.real, others, cea.band)?,
+            Some(closed) => FamilyFrame::closed(closed, others, band)?,
+            None => {
+                let displacement = &nominal.steady.displacement;
+                FamilyFrame::new(&nominal.system, displacement, &nominal.real, others, band)?
+            }
         };
-        Ok(Explorer { start, nominal, case, frame, known, observer })
+        Ok(Explorer { start, case, frame, known, observer })
     }
 }
 
 impl Explorer<'_> {
     /// The case with its studies.
     pub(super) fn whole_case(&self) -> &Case {
-        self.nominal.prepared.case
+        self.start.nominal.prepared.case
     }
 
     /// Every sweep and map of the case, and the verdicts of its damping.
@@ -202,17 +130,6 @@ impl Explorer<'_> {
         Ok(())
     }
 
-    fn states(&self, paths: &[String]) -> States<'_> {
-        States {
-            prepared: self.nominal.prepared,
-            case: self.case,
-            paths: paths.to_vec(),
-            condensed: &self.start.condensed,
-            nominal: &self.nominal.steady.points,
-            dampings: &self.start.dampings,
-        }
-    }
-
     fn keeps_the_structure(&self, paths: &[String]) -> Result<bool> {
         let each =
             paths.iter().map(|path| keeps_the_structure(self.case, path)).collect::<Result<Vec<bool>>>()?;
@@ -221,7 +138,7 @@ impl Explorer<'_> {
 
     /// A family trained on the states of the scalars at `paths` at `places`; those without an answer are left out.
     fn family(&self, paths: &[String], places: &[Vec<f64>]) -> Result<OnFamily<'_>> {
-        let states = self.states(paths);
+        let states = States::new(self.start, paths)?;
         self.observer.begin("reduced model", Some(places.len() as u64));
         let members: Vec<SlidingState> = places.iter().filter_map(|at| states.at(at).ok()).collect();
         if members.is_empty() {
@@ -242,7 +159,11 @@ impl Explorer<'_> {
         if self.keeps_the_structure(&study.paths)? {
             return Ok(Problem::Reduced(self.family(&study.paths, &study.training())?));
         }
-        Ok(Problem::Whole(Whole::new(self.case, study.paths.clone(), Some(&self.start.reference.0))))
+        Ok(Problem::Whole(Whole::new(
+            self.start.nominal.prepared,
+            study.paths.clone(),
+            Some(&self.start.reference.0),
+        )))
     }
 
     /// Solves a study by whole analyses, or on a reduced model, which is trained at the places where `solve` finds that it is not good

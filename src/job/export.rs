@@ -138,7 +138,7 @@ fn keep_what_is_there(case: &Case, exported: &mut Case) -> Vec<String> {
             out.push(gone("transient.fields_every", "its mesh"));
         }
     }
-    let bare = Case { calibrate: None, sensitivity: None, ..exported.without_sweeps() };
+    let bare = exported.without_studies();
     let known = |path: &String| bare.parameter(path).is_ok();
     keep(&mut exported.sweep, out, ("sweep", "its scalar"), |sweep| known(&sweep.parameter));
     keep(&mut exported.map, out, ("map", "its scalars"), |map| map.parameters.iter().all(known));
@@ -214,7 +214,7 @@ fn dofs(prepared: &Prepared) -> String {
 
 fn points(pair: &ContactPair) -> String {
     let mut text = String::from("normal,t1,t2,weight,gap,x,y,z\n");
-    for point in &pair.points {
+    for point in &*pair.points {
         let [t1, t2] = &point.tangents;
         let [x, y, z] = point.position;
         let directions = [&point.normal, t1, t2].map(direction_text).join(",");

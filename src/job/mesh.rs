@@ -4,9 +4,29 @@ use crate::case::{AnnulusMesh, Case, MeshSource, PlateMesh, RigMesh, SpringPer};
 use crate::error::{Error, Fault, Faults, Result};
 use crate::mesh::generate::{self, BarSide, BarSpec, DiscSpec, Faces, Grading, PlateSpec, RigSpec};
 use crate::mesh::{self, Mesh};
+use std::sync::Arc;
 
-/// The mesh of the case, checked.
-pub(super) fn read_mesh(case: &Case, source: &MeshSource) -> Result<(Mesh, Vec<String>)> {
+/// The mesh of a case as it was read or generated, before anything is placed.
+#[derive(Debug, Default)]
+pub(super) struct CheckedMesh {
+    pub(super) mesh: Arc<Mesh>,
+    /// What the user should know of it.
+    pub(super) warnings: Vec<String>,
+}
+
+/// Whether two cases that differ in scalars alone have the same mesh.
+pub(super) fn same_mesh(a: &Case, b: &Case) -> bool {
+    // A generated slider lies on the disc, half of its thickness above.
+    let rig = |case: &Case| match &case.mesh {
+        Some(MeshSource::Rig { .. }) => case.shell.get("slider").map(|slider| slider.thickness),
+        _ => None,
+    };
+    a.mesh == b.mesh && a.folder == b.folder && rig(a) == rig(b)
+}
+
+/// The mesh of the case, checked; an empty one where it has none.
+pub(super) fn read_mesh(case: &Case) -> Result<CheckedMesh> {
+    let Some(source) = &case.mesh else { return Ok(CheckedMesh::default()) };
     let mesh = match source {
         MeshSource::File { file, unit } => {
             mesh::read(&case.folder.join(file), mesh::unit_in_metres(unit.word()))
@@ -34,7 +54,8 @@ pub(super) fn read_mesh(case: &Case, source: &MeshSource) -> Result<(Mesh, Vec<S
     };
     let at_key = |fault: Fault| Fault { place: format!("`mesh.{key}`: {}", fault.place), ..fault };
     Faults(diagnosis.faults.0.into_iter().map(at_key).collect()).into_result(())?;
-    Ok((mesh, diagnosis.warnings.iter().map(Fault::warning).collect()))
+    let warnings = diagnosis.warnings.iter().map(Fault::warning).collect();
+    Ok(CheckedMesh { mesh: mesh.into(), warnings })
 }
 
 /// Faults of a generator at the keys of the case that give its sizes.

@@ -34,6 +34,7 @@ mod mesh;
 mod model;
 mod modes;
 mod motion;
+mod operating_point;
 #[cfg(feature = "cli")]
 mod parts;
 mod place;

@@ -3,11 +3,12 @@
 
 use super::analyse::{Asked, operating_point};
 use super::analyses::Selection;
-use super::explore::{Explorer, Nominal, Start};
+use super::explore::Explorer;
 use super::known::{KnownAnswers, origin};
 use super::memory::check_memory;
 use super::prepared::Prepared;
 use super::singular::explained;
+use super::states::Start;
 use super::studies::{Study, studies};
 use super::study_solver::StudySolver;
 use crate::case::Case;
@@ -94,9 +95,7 @@ pub fn run_parts(
     let Some(mut work) = open(&mut done)? else { return Ok(done) };
     let computing = |error: Error| explained(&prepared, error.while_computing());
     let point = operating_point(&prepared, asked, observer).map_err(computing)?;
-    let nominal =
-        Nominal { prepared: &prepared, system: &point.system, steady: &point.steady, real: &point.real };
-    let start = Start::new(&nominal).map_err(computing)?;
+    let start = Start::new(&point).map_err(computing)?;
     let none = KnownAnswers::default();
     let explorer = Explorer::new(&start, &none, observer).map_err(computing)?;
     let mut solvers = Solvers { explorer: &explorer, last: None };

@@ -5,6 +5,7 @@ use crate::case::{Case, Contact, Placement};
 use crate::connected::lowest_connected;
 use crate::contact::{self, OffCounter};
 use crate::error::{Error, Fault, Result};
+use std::sync::Arc;
 
 /// Turns and moves everything connected to the contact's body as [`contact::place`] does.
 ///
@@ -41,13 +42,15 @@ pub fn place(
         lead_angle: placement.lead_angle,
         position: placement.position,
     };
-    contact::place(&mut regions.mesh.nodes, &stand).map_err(|OffCounter { axis, reach }| {
-        Error::input(Fault::new(
-            format!("{place} position"),
-            format!("{} m from the middle of `{counter}`", placement.position[axis]),
-            format!("a point on it: at most {reach} m along {}", ["x", "y"][axis]),
-        ))
-    })
+    contact::place(&mut Arc::make_mut(&mut regions.mesh).nodes, &stand).map_err(
+        |OffCounter { axis, reach }| {
+            Error::input(Fault::new(
+                format!("{place} position"),
+                format!("{} m from the middle of `{counter}`", placement.position[axis]),
+                format!("a point on it: at most {reach} m along {}", ["x", "y"][axis]),
+            ))
+        },
+    )
 }
 
 /// For every node, the lowest node it is connected to through elements, rigid bodies, averaging links and ties.

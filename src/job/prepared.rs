@@ -4,7 +4,7 @@ use super::contacts::{arrows, contact_pairs};
 use super::discs::discs;
 use super::imported::read_model;
 use super::links::in_terms_of_the_case;
-use super::mesh::read_mesh;
+use super::mesh::{CheckedMesh, read_mesh, same_mesh};
 use super::model::whole_model;
 use super::place::place;
 use super::regions::Regions;
@@ -12,7 +12,7 @@ use crate::case::{Case, Matrices};
 use crate::equilibrium::SteadyOptions;
 use crate::error::{Faults, Result};
 use crate::linalg::Engine;
-use crate::mesh::{Cell, Mesh};
+use crate::mesh::Cell;
 use crate::modal::Disc;
 use crate::results::{Geometry, ModelSize};
 use crate::structure::{Assembled, Model, Part, assemble};
@@ -34,6 +34,8 @@ pub struct Prepared<'a> {
     pub system: System,
     /// Things the user should know.
     pub warnings: Vec<String>,
+    /// Its mesh, before anything was placed.
+    mesh: Arc<CheckedMesh>,
 }
 
 impl<'a> Prepared<'a> {
@@ -42,18 +44,27 @@ impl<'a> Prepared<'a> {
     /// # Errors
     /// Every fault of the mesh and of the names that tie the case to it.
     pub fn new(case: &'a Case) -> Result<Self> {
-        Self::build(case).map_err(|error| case.places.locate(error))
+        let mesh = read_mesh(case).map(Arc::new);
+        mesh.and_then(|mesh| Self::build(case, mesh)).map_err(|error| case.places.locate(error))
     }
 
-    fn build(case: &'a Case) -> Result<Self> {
-        let (mesh, mut warnings) = match &case.mesh {
-            Some(source) => read_mesh(case, source)?,
-            None => (Mesh::default(), Vec::new()),
-        };
-        let mut regions = Regions::new(mesh, case);
-        if let Some(matrices) = &case.matrices {
-            return Self::imported(case, regions, matrices);
+    /// A case that differs from this one in scalars, on the same mesh as long as that does not depend on them.
+    ///
+    /// # Errors
+    /// As [`Prepared::new`].
+    pub fn rebuilt<'b>(&self, case: &'b Case) -> Result<Prepared<'b>> {
+        match same_mesh(self.case, case) {
+            true => Prepared::build(case, self.mesh.clone()).map_err(|error| case.places.locate(error)),
+            false => Prepared::new(case),
         }
+    }
+
+    fn build(case: &'a Case, mesh: Arc<CheckedMesh>) -> Result<Self> {
+        let mut regions = Regions::new(mesh.mesh.clone(), case);
+        if let Some(matrices) = &case.matrices {
+            return Self::imported(case, (mesh, regions), matrices);
+        }
+        let mut warnings = mesh.warnings.clone();
         let mut faults = Faults::new();
         let named = faults.take(regions.check_named(case)).is_some();
         for (name, contact) in case.contact.iter().filter(|_| named) {
@@ -72,11 +83,15 @@ impl<'a> Prepared<'a> {
             prestress: case.prestress.then(|| Arc::new(assembled.prestress(model.clone())) as Arc<_>),
             coupling: None,
         };
-        Ok(Prepared { case, regions, model, assembled, system, warnings })
+        Ok(Prepared { case, regions, model, assembled, system, warnings, mesh })
     }
 
     /// The same for a case that gives the matrices.
-    fn imported(case: &'a Case, regions: Regions, matrices: &Matrices) -> Result<Self> {
+    fn imported(
+        case: &'a Case,
+        (mesh, regions): (Arc<CheckedMesh>, Regions),
+        matrices: &Matrices,
+    ) -> Result<Self> {
         let imported = read_model(case, matrices)?;
         let model = Model { nodes: imported.nodes, ..Model::default() };
         let assembled = Arc::new(imported.assembled);
@@ -88,7 +103,7 @@ impl<'a> Prepared<'a> {
             prestress: None,
             coupling: imported.coupling,
         };
-        Ok(Prepared { case, regions, model, assembled, system, warnings: imported.warnings })
+        Ok(Prepared { case, regions, model, assembled, system, warnings: imported.warnings, mesh })
     }
 
     /// The same with its matrices factorised by `engine`.
@@ -168,4 +183,50 @@ pub fn external_load(case: &Case, regions: &Regions, assembled: &Assembled) -> R
         }
     }
     faults.into_result(load)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::job::{Selection, Whole, analyse};
+    use crate::results::{CalibrationResult, SensitivityResult};
+    use crate::sweep::SweepProblem;
+    use std::path::Path;
+
+    /// Derivatives by the structure, whole analyses of a sweep and a calibration are those of the mesh that was read: its file may be gone.
+    #[test]
+    fn the_file_of_a_mesh_is_read_once() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("rig-small.msh");
+        std::fs::copy(Path::new(env!("CARGO_MANIFEST_DIR")).join("meshes/rig-small.msh"), &file).unwrap();
+        let text = include_str!("../../validation/cea-transient-rig/case.toml");
+        let text =
+            text.replace("../../meshes/rig-medium.msh", "rig-small.msh").replace("\"6 kHz\"", "\"2 kHz\"");
+        let more = "[modes.disc]\nparts = [\"disc\"]\nclamp = [\"hub\"]\nbelow = \"1 kHz\"\nmeasured = [\"331 Hz\"]\n\
+                    [sensitivity]\nparameters = [\"shell.*\", \"*.lead_angle\", \"*.load\"]\nadvice = false\nverify = false\n\
+                    [calibrate]\nagainst = \"disc\"\nchance_draws = 0\ntrials = 1\n[calibrate.parameter.disc]\n\
+                    path = \"shell.disc.thickness\"\nbetween = [\"0.9 mm\", \"1.1 mm\"]\n";
+        let text = format!("{}{more}", &text[..text.find("[transient]").unwrap()]);
+        let case = Case::parse("rig", &text, folder.path().into()).unwrap();
+        let prepared = Prepared::new(&case).unwrap();
+        let all = || {
+            let of = |name| analyse(&prepared, Selection::Only(name), &mut |_| Ok(()), &()).unwrap();
+            let (sensitivity, calibration) = (of("sensitivity"), of("calibrate"));
+            let rates = sensitivity.get::<SensitivityResult>().unwrap();
+            assert!(
+                rates.left_out.is_empty() && rates.modes[0].parameters.len() == 4,
+                "{:?}",
+                rates.left_out
+            );
+            let rates =
+                rates.modes.iter().flat_map(|mode| &mode.parameters).map(|p| (p.path.clone(), p.rate));
+            let found = calibration.get::<CalibrationResult>().unwrap().numbers[0].after;
+            let whole = Whole::new(&prepared, vec!["shell.disc.thickness".into()], None);
+            (rates.collect::<Vec<_>>(), found, whole.eigenvalues(&[1.01e-3]).unwrap())
+        };
+        let there = all();
+        std::fs::remove_file(file).unwrap();
+        assert_eq!(all(), there);
+        assert!(Prepared::new(&case).is_err());
+    }
 }

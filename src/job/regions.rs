@@ -4,12 +4,13 @@ use crate::case::{Case, MeshSource};
 use crate::error::{Error, Fault, Faults, Result, nearest};
 use crate::mesh::{Cell, CellKind, Mesh, Region, made_of};
 use crate::schema::dotted;
+use std::sync::Arc;
 
 /// A mesh whose regions are looked up by name, with a fault that lists the existing ones.
 #[derive(Debug, Clone)]
 pub struct Regions {
     /// The mesh, in metres.
-    pub mesh: Mesh,
+    pub mesh: Arc<Mesh>,
     /// The file of the mesh, in back-ticks, or `the mesh`.
     name: String,
 }
@@ -24,8 +25,9 @@ fn kind(region: &Region) -> &'static str {
 
 impl Regions {
     /// Adds the case's points to `mesh` as regions of one point.
-    pub fn new(mut mesh: Mesh, case: &Case) -> Self {
+    pub fn new(mut mesh: Arc<Mesh>, case: &Case) -> Self {
         for (name, position) in &case.point {
+            let mesh = Arc::make_mut(&mut mesh);
             mesh.nodes.push(*position);
             mesh.elements.push(Cell::point(mesh.nodes.len() - 1));
             mesh.regions.push(Region {

@@ -4,6 +4,7 @@ use super::clock::Clock;
 use super::complex::whole_modes;
 use super::known::KnownAnswers;
 use super::modes::{check_damping_frequencies, real_modes_below};
+use super::operating_point::OperatingPoint;
 use super::prepared::Prepared;
 use super::sink::{ResultSink, ResultStage};
 use crate::case::StiffnessPer;
@@ -12,9 +13,8 @@ use crate::error::Result;
 use crate::modal::RealModes;
 use crate::progress::Observer;
 use crate::results::{AnalysisRecord, RunResults, SteadyResult};
-use crate::system::System;
-use std::borrow::Cow;
 use std::rc::Rc;
+use std::sync::Arc;
 
 /// The analyses of a case under way.
 pub struct Run<'a, 'k> {
@@ -37,17 +37,7 @@ pub struct Run<'a, 'k> {
     /// The state about which complex modes were computed.
     pub operating_point: Option<Rc<OperatingPoint<'a>>>,
     complex: bool,
-    steady: Option<Rc<SteadySliding>>,
-}
-
-/// Steady sliding and the linear system about it.
-pub struct OperatingPoint<'a> {
-    /// Steady sliding.
-    pub steady: Rc<SteadySliding>,
-    /// The system with its modal damping.
-    pub system: Cow<'a, System>,
-    /// The real modes that span the complex ones.
-    pub real: RealModes,
+    steady: Option<Arc<SteadySliding>>,
 }
 
 impl<'a, 'k> Run<'a, 'k> {
@@ -93,7 +83,7 @@ impl<'a, 'k> Run<'a, 'k> {
     ///
     /// # Errors
     /// No steady state: an open contact, a structure that nothing holds. What the sink returns.
-    pub fn steady(&mut self) -> Result<Rc<SteadySliding>> {
+    pub fn steady(&mut self) -> Result<Arc<SteadySliding>> {
         if let Some(steady) = &self.steady {
             return Ok(steady.clone());
         }
@@ -102,7 +92,7 @@ impl<'a, 'k> Run<'a, 'k> {
         let state = self.timed("steady sliding", |observer| {
             equilibrium::solve_steady(&prepared.system, &options, observer)
         })?;
-        let steady = Rc::new(state.clone());
+        let steady = Arc::new(state.clone());
         self.steady = Some(steady.clone());
         if !prepared.system.pairs.is_empty() {
             self.found(steady_result(prepared, state))?;

@@ -130,7 +130,7 @@ impl CaseScalar {
             let load = external_load(&case, &prepared.regions, &prepared.assembled)?;
             return Ok(System { pairs: with_laws(&system.pairs, &case)?, load, ..system.clone() });
         }
-        let other = Prepared::new(&case)?;
+        let other = prepared.rebuilt(&case)?;
         let points = |s: &System| s.pairs.iter().map(|p| p.points.len()).collect::<Vec<_>>();
         same_structure(prepared, &other)?;
         if points(&other.system) != points(system) {

@@ -1,14 +1,12 @@
 //! Sensitivities of the unstable modes of a case to its scalars and to small masses, springs and dampers at its nodes.
 
 use super::modes::{damped_below, modal_ratios};
-use super::prepared::Prepared;
+use super::operating_point::OperatingPoint;
 use super::scalars::{CaseScalar, ScalarKind, chosen, same_structure};
 use super::verify;
 use crate::case::{Factor, SensitivityAnalysis};
-use crate::equilibrium::SteadySliding;
 use crate::error::{Error, Result};
 use crate::linalg::{SparseVector, c64};
-use crate::modal::RealModes;
 use crate::progress::Observer;
 use crate::results::{AdviceField, ModeSensitivity, Mounted, ParameterRate, SensitivityResult};
 use crate::stability::{ComplexMode, ComplexModes, Domain, PointRates, Rate, Sensitivity, near_mode};
@@ -23,37 +21,25 @@ const ONE_AT_A_TIME: usize = 150_000;
 /// The share of a thing that shows the slope.
 const SMALL: f64 = 1e-3;
 
-/// A case with its complex modes.
-pub struct Analysed<'a> {
-    /// The case made ready.
-    pub prepared: &'a Prepared<'a>,
-    /// Its system, modal damping included.
-    pub system: &'a System,
-    /// Its steady state.
-    pub steady: &'a SteadySliding,
-    /// The real modes that span the complex analysis.
-    pub real: &'a RealModes,
-    /// The complex modes.
-    pub modes: &'a ComplexModes,
-}
-
-impl Analysed<'_> {
-    /// Sensitivities, advice and its proof, as `wanted`.
+impl OperatingPoint<'_> {
+    /// Sensitivities of its complex modes, advice and its proof, as `wanted`.
     ///
     /// # Errors
     /// An analysis without an answer.
     pub fn sensitivities(
         &self,
+        modes: &ComplexModes,
         wanted: &SensitivityAnalysis,
         observer: &dyn Observer,
     ) -> Result<SensitivityResult> {
         let (scalars, mut left_out) = chosen(self.prepared.case, &wanted.parameters);
-        let picked = self.chosen_modes(&wanted.modes)?;
-        let modes: Vec<&ComplexMode> = picked.iter().map(|k| &self.modes.modes[*k]).collect();
+        let all = &modes.modes;
+        let picked = chosen_modes(all, &wanted.modes)?;
+        let modes: Vec<&ComplexMode> = picked.iter().map(|k| &all[*k]).collect();
         if modes.is_empty() {
             return Ok(SensitivityResult { modes: Vec::new(), left_out });
         }
-        let sensitivity = Sensitivity::new(self.system, self.steady, self.real, &modes)?;
+        let sensitivity = Sensitivity::new(&self.system, &self.steady, &self.real, &modes)?;
 
         observer.begin("sensitivities", Some(scalars.len() as u64));
         let of = |scalar: &CaseScalar| {
@@ -104,17 +90,22 @@ impl Analysed<'_> {
             self.advise(wanted, &sensitivity, &mut results);
         }
         if wanted.verify {
-            self.verify(&mut results, observer)?;
+            self.verify(all, &mut results, observer)?;
         }
         Ok(SensitivityResult { modes: results, left_out })
     }
 
     /// Mounts the best things really, and small parts of them.
-    fn verify(&self, results: &mut [ModeSensitivity], observer: &dyn Observer) -> Result<()> {
+    fn verify(
+        &self,
+        modes: &[ComplexMode],
+        results: &mut [ModeSensitivity],
+        observer: &dyn Observer,
+    ) -> Result<()> {
         let all = results.iter().map(|r| r.best.len() as u64).sum();
         observer.begin("mounting what helps", Some(all));
         for result in results {
-            let mode = &self.modes.modes[result.mode];
+            let mode = &modes[result.mode];
             for mounted in &mut result.best {
                 let change = |share: f64| -> Result<c64> {
                     let thing = Mounted { amount: share * mounted.amount, ..mounted.clone() };
@@ -130,37 +121,6 @@ impl Analysed<'_> {
         Ok(())
     }
 
-    /// Indices of the modes nearest to `frequencies`, or of the unstable ones, or of the one nearest to instability;
-    /// ascending.
-    /// Fails for a frequency that no mode is near.
-    fn chosen_modes(&self, frequencies: &[f64]) -> Result<Vec<usize>> {
-        let modes = &self.modes.modes;
-        let by_growth = |a: &usize, b: &usize| modes[*b].growth_rate().total_cmp(&modes[*a].growth_rate());
-        let mut picked: Vec<usize> = if frequencies.is_empty() {
-            let mut all: Vec<usize> = (0..modes.len()).collect();
-            all.sort_by(by_growth);
-            let unstable = all.iter().filter(|k| modes[**k].unstable()).count();
-            all.truncate(unstable.clamp(1, MOST_MODES));
-            all
-        } else {
-            let nearest = |hz: &f64| {
-                near_mode(modes, *hz, |_| true).ok_or_else(|| {
-                    let found =
-                        format!("no complex mode within 10 % of {hz} Hz, which `sensitivity.modes` names");
-                    Error::analysis(
-                        "sensitivities",
-                        found,
-                        "Name frequencies near complex modes, or none for those that grow",
-                    )
-                })
-            };
-            frequencies.iter().map(nearest).collect::<Result<_>>()?
-        };
-        picked.sort_unstable();
-        picked.dedup();
-        Ok(picked)
-    }
-
     /// dλ/dp of every chosen mode.
     pub(super) fn rates(&self, sensitivity: &Sensitivity, scalar: &CaseScalar) -> Result<Vec<Rate>> {
         let case = self.prepared.case;
@@ -169,8 +129,8 @@ impl Analysed<'_> {
             // C is linear in the ratio, so that a step of any size gives the derivative.
             let step = if value > 0.5 { -0.1 } else { 0.1 };
             let below = case.cea.as_ref().map_or(f64::INFINITY, |cea| damped_below(case, cea));
-            let here = modal_ratios(case, self.real, below)?;
-            let there = modal_ratios(&case.with_parameter(&scalar.path, value + step)?, self.real, below)?;
+            let here = modal_ratios(case, &self.real, below)?;
+            let there = modal_ratios(&case.with_parameter(&scalar.path, value + step)?, &self.real, below)?;
             let change: Vec<f64> = there.iter().zip(&here).map(|(a, b)| (a - b) / step).collect();
             let exact = |value: c64| Rate { value, error: 0.0, kink: false };
             return Ok(sensitivity.change_by_ratios(&change).into_iter().map(exact).collect());
@@ -218,7 +178,7 @@ impl Analysed<'_> {
         if !step.is_finite() {
             return Ok(sensitivity.eigenvalues().iter().map(|_| exact(c64::new(0.0, 0.0))).collect());
         }
-        let other = Prepared::new(&case)?;
+        let other = self.prepared.rebuilt(&case)?;
         same_structure(self.prepared, &other)?;
         Ok(sensitivity.change(&other.system)?.into_iter().map(|change| exact(change / step)).collect())
     }
@@ -337,6 +297,36 @@ impl Analysed<'_> {
         }
         normals.iter().map(|n| n.try_normalize(0.0).unwrap_or_default().into()).collect()
     }
+}
+
+/// Indices of the modes nearest to `frequencies`, or of the unstable ones, or of the one nearest to instability;
+/// ascending.
+/// Fails for a frequency that no mode is near.
+fn chosen_modes(modes: &[ComplexMode], frequencies: &[f64]) -> Result<Vec<usize>> {
+    let by_growth = |a: &usize, b: &usize| modes[*b].growth_rate().total_cmp(&modes[*a].growth_rate());
+    let mut picked: Vec<usize> = if frequencies.is_empty() {
+        let mut all: Vec<usize> = (0..modes.len()).collect();
+        all.sort_by(by_growth);
+        let unstable = all.iter().filter(|k| modes[**k].unstable()).count();
+        all.truncate(unstable.clamp(1, MOST_MODES));
+        all
+    } else {
+        let nearest = |hz: &f64| {
+            near_mode(modes, *hz, |_| true).ok_or_else(|| {
+                let found =
+                    format!("no complex mode within 10 % of {hz} Hz, which `sensitivity.modes` names");
+                Error::analysis(
+                    "sensitivities",
+                    found,
+                    "Name frequencies near complex modes, or none for those that grow",
+                )
+            })
+        };
+        frequencies.iter().map(nearest).collect::<Result<_>>()?
+    };
+    picked.sort_unstable();
+    picked.dedup();
+    Ok(picked)
 }
 
 /// Why a scalar has no derivative, in a few words.

@@ -3,16 +3,25 @@
 use super::clock::Clock;
 use super::complex::band_modes;
 use super::contacts::with_laws;
+use super::known::Reference;
+use super::modes::add_modal_damping;
+use super::operating_point::OperatingPoint;
 use super::prepared::{Prepared, external_load};
-use crate::case::{Case, CeaAnalysis, Invalidates};
-use crate::equilibrium::{self, Condensed, PointState, solve_points};
+use super::studies::{SHARED, studies};
+use crate::case::{Case, CeaAnalysis, Invalidates, VariedCase};
+use crate::equilibrium::{self, Condensed, PointState, solve_points, tangent_stiffness};
 use crate::error::Result;
 use crate::linalg::c64;
 use crate::linalg::multivector::gram;
-use crate::stability::{ComplexMode, Family, FamilyCheck, SlidingState};
+use crate::stability::{ClosedContact, ComplexMode, Family, FamilyCheck, SlidingState};
 use crate::sweep::{AtOnce, Checked, MeasuredProblem, Modes, SweepProblem};
+use crate::system::Damping;
 use faer::Mat;
 use std::borrow::Cow;
+use std::f64::consts::TAU;
+
+/// The path of ζ.
+pub(super) const RATIO: &str = "damping.modal_ratio";
 
 /// Whether a change of the scalar at `path` leaves M, K and the contact directions alone, and C affine in it.
 pub(super) fn keeps_the_structure(case: &Case, path: &str) -> Result<bool> {
@@ -21,49 +30,110 @@ pub(super) fn keeps_the_structure(case: &Case, path: &str) -> Result<bool> {
     Ok(case.parameter(path)?.invalidates <= Invalidates::Equilibrium && !chooses_modes)
 }
 
-/// The case with the scalars at `paths` set to `at`.
-pub(super) fn varied(case: &Case, paths: &[String], at: &[f64]) -> Result<Case> {
-    case.with_parameters(paths.iter().zip(at.iter().copied()))
+/// Every damping scalar that a study or the verdicts vary: path, its value, another value that the case accepts.
+fn dampings(whole: &Case, case: &Case) -> Result<Vec<(String, f64, f64)>> {
+    let mut found: Vec<(String, f64, f64)> = Vec::new();
+    let all = SHARED.into_iter().flat_map(|analysis| studies(whole, analysis));
+    for (path, ends) in all.flat_map(|study| study.paths.into_iter().zip(study.bounds)) {
+        let parameter = case.parameter(&path)?;
+        let known = found.iter().any(|(other, ..)| *other == path);
+        if parameter.invalidates == Invalidates::Damping && keeps_the_structure(case, &path)? && !known {
+            let other = if ends[0] == parameter.value { ends[1] } else { ends[0] };
+            found.push((path, parameter.value, other));
+        }
+    }
+    let ratio = case.damping.modal_ratio;
+    if ratio > 0.0 && !found.iter().any(|(path, ..)| path == RATIO) {
+        found.push((RATIO.into(), ratio, 0.5 * ratio));
+    }
+    Ok(found)
 }
 
-/// Data common to the sliding states of a sweep.
+/// The damping of the structure with one scalar at its other value.
+fn other_damping(
+    nominal: &OperatingPoint,
+    case: &Case,
+    (path, _, value): &(String, f64, f64),
+) -> Result<Damping> {
+    let case = case.with_parameter(path, *value)?;
+    let mut structure = nominal.prepared.rebuilt(&case)?.system.structure;
+    add_modal_damping(&mut structure, &nominal.real, &case)?;
+    Ok(structure.damping)
+}
+
+/// Data that all studies of a case start from.
+pub(super) struct Start<'a> {
+    pub(super) nominal: &'a OperatingPoint<'a>,
+    /// The case without its studies.
+    pub(super) case: Case,
+    condensed: Condensed,
+    /// The structure with its contact closed, where that has many points.
+    pub(super) closed: Option<ClosedContact>,
+    dampings: Vec<(String, f64, f64)>,
+    /// The damping of the structure with each of them at its other value.
+    pub(super) others: Vec<Damping>,
+    pub(super) reference: Reference,
+}
+
+impl<'a> Start<'a> {
+    pub(super) fn new(nominal: &'a OperatingPoint<'a>) -> Result<Self> {
+        let case = nominal.prepared.case.without_studies();
+        let dampings = dampings(nominal.prepared.case, &case)?;
+        let others = dampings.iter().map(|d| other_damping(nominal, &case, d)).collect::<Result<_>>()?;
+        let OperatingPoint { system, steady, real, .. } = nominal;
+        let k = tangent_stiffness(system, &steady.displacement)?;
+        let condensed = Condensed::new(system, &k)?;
+        let reference = Reference::new(system, real);
+        let top = TAU * case.cea.as_ref().expect("a case with complex modes").band[1];
+        let closed = ClosedContact::of((system, steady), real, top, &())?;
+        Ok(Start { nominal, case, condensed, closed, dampings, others, reference })
+    }
+}
+
+/// The sliding states of a sweep.
 pub(super) struct States<'a> {
-    pub(super) prepared: &'a Prepared<'a>,
-    /// The case without its sweeps.
-    pub(super) case: &'a Case,
-    pub(super) paths: Vec<String>,
-    pub(super) condensed: &'a Condensed,
-    /// The contact points of the case itself.
-    pub(super) nominal: &'a [PointState],
-    /// The damping scalars of all sweeps: path, value of the case, value of the other damping.
-    pub(super) dampings: &'a [(String, f64, f64)],
+    start: &'a Start<'a>,
+    case: VariedCase,
+    /// Whether the contact points depend on a scalar of the sweep, and the external force.
+    touched: bool,
+    forced: bool,
 }
 
-impl States<'_> {
+impl<'a> States<'a> {
+    pub(super) fn new(start: &'a Start<'a>, paths: &[String]) -> Result<Self> {
+        let touches = |path: &String| Ok(start.case.parameter(path)?.invalidates > Invalidates::Damping);
+        let touched = paths.iter().map(touches).collect::<Result<Vec<bool>>>()?.contains(&true);
+        let forced = paths.iter().any(|path| path.starts_with("force."));
+        let case = VariedCase::new(start.case.clone(), paths.to_vec());
+        Ok(States { start, case, touched, forced })
+    }
+
     /// The state at `at`.
     pub(super) fn at(&self, at: &[f64]) -> Result<SlidingState> {
-        let case = varied(self.case, &self.paths, at)?;
-        let touches = |path: &String| Ok(case.parameter(path)?.invalidates > Invalidates::Damping);
-        let touched = self.paths.iter().map(touches).collect::<Result<Vec<bool>>>()?;
-        let points = if touched.contains(&true) {
-            let system = &self.prepared.system;
-            let load = match self.paths.iter().any(|path| path.starts_with("force.")) {
-                true => Cow::Owned(external_load(&case, &self.prepared.regions, &self.prepared.assembled)?),
-                false => Cow::Borrowed(&system.load),
-            };
-            let options = self.prepared.steady_options();
-            solve_points(&with_laws(&system.pairs, &case)?, &load, self.condensed, &options)?
-        } else {
-            self.nominal.to_vec()
-        };
+        let points = self.case.at(at, |case| self.points(case))?;
         let mut damping_weights = vec![1.0];
-        for (path, own, other) in self.dampings {
-            let value = self.paths.iter().position(|p| p == path).map_or(*own, |k| at[k]);
+        for (path, own, other) in &self.start.dampings {
+            let value = self.case.paths().iter().position(|p| p == path).map_or(*own, |k| at[k]);
             let weight = (value - own) / (other - own);
             damping_weights.push(weight);
             damping_weights[0] -= weight;
         }
         Ok(SlidingState { points, damping_weights })
+    }
+
+    /// The contact points of a case of the sweep.
+    fn points(&self, case: &Case) -> Result<Vec<PointState>> {
+        let OperatingPoint { prepared, steady, .. } = self.start.nominal;
+        if !self.touched {
+            return Ok(steady.points.clone());
+        }
+        let system = &prepared.system;
+        let load = match self.forced {
+            true => Cow::Owned(external_load(case, &prepared.regions, &prepared.assembled)?),
+            false => Cow::Borrowed(&system.load),
+        };
+        let pairs = with_laws(&system.pairs, case)?;
+        solve_points(&pairs, &load, &self.start.condensed, &prepared.steady_options())
     }
 }
 
@@ -125,28 +195,30 @@ const SMALL: usize = 5000;
 
 /// The members of a sweep by whole analyses, for scalars that change the structure.
 pub struct Whole<'a> {
-    case: Case,
-    paths: Vec<String>,
+    prepared: &'a Prepared<'a>,
+    case: VariedCase,
     /// M Φ of real modes to which shapes are compared; those of the case itself.
     reference: Option<&'a Mat<f64>>,
 }
 
 impl<'a> Whole<'a> {
-    /// For the scalars at `paths` of `case`. Shapes are followed in the coordinates Φᵀ M φ when `reference` = M Φ is
+    /// For the scalars at `paths` of the case. Shapes are followed in the coordinates Φᵀ M φ when `reference` = M Φ is
     /// given, as long as the degrees of freedom stay the same.
-    pub fn new(case: &Case, paths: Vec<String>, reference: Option<&'a Mat<f64>>) -> Self {
-        Whole { case: case.without_sweeps(), paths, reference }
+    pub fn new(prepared: &'a Prepared<'a>, paths: Vec<String>, reference: Option<&'a Mat<f64>>) -> Self {
+        Whole { prepared, case: VariedCase::new(prepared.case.without_studies(), paths), reference }
     }
 
     fn analyse(&self, at: &[f64]) -> Result<Vec<ComplexMode>> {
-        let case = varied(&self.case, &self.paths, at)?;
-        let Some(cea) = &case.cea else { return Ok(Vec::new()) };
-        let prepared = Prepared::new(&case)?;
-        let steady = equilibrium::solve_steady(&prepared.system, &prepared.steady_options(), &())?;
-        // Growth is read off the eigenvalues here, not counted.
-        let cea = CeaAnalysis { certify: Some(false), left_vectors: false, ..cea.clone() };
-        let (found, ..) = band_modes((&prepared, &steady), &cea, None, false, &mut Clock::default(), &())?;
-        Ok(found.modes.modes)
+        self.case.at(at, |case| {
+            let Some(cea) = &case.cea else { return Ok(Vec::new()) };
+            let prepared = self.prepared.rebuilt(case)?;
+            let steady = equilibrium::solve_steady(&prepared.system, &prepared.steady_options(), &())?;
+            // Growth is read off the eigenvalues here, not counted.
+            let cea = CeaAnalysis { certify: Some(false), left_vectors: false, ..cea.clone() };
+            let (found, ..) =
+                band_modes((&prepared, &steady), &cea, None, false, &mut Clock::default(), &())?;
+            Ok(found.modes.modes)
+        })
     }
 }
 

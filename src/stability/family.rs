@@ -242,11 +242,14 @@ impl<'f> Family<'f> {
     /// As [`Family::new`].
     pub fn train(&mut self, state: &SlidingState) -> Result<FamilyCheck> {
         const REFINEMENTS: i32 = 6;
+        let band = self.frame.band;
         let measure = |of: &Self| -> Result<_> {
-            let modes = of.solve(&of.reduced, state)?;
-            Ok(of.measure(&of.reduced, state, &modes))
+            let spectrum = of.reduced.spectrum(&of.frame.terms(state), &state.damping_weights)?;
+            let measured = of.measure(&of.reduced, state, &spectrum.modes(|z| in_band(z, band)));
+            let near = (of.basis.len() > LARGE).then(|| spectrum.modes(|z| near_band(z, band)));
+            Ok((measured, near))
         };
-        let (mut check, mut wanted) = measure(self)?;
+        let ((mut check, mut wanted), mut near) = measure(self)?;
         for k in 0..REFINEMENTS {
             if wanted.is_empty() {
                 break;
@@ -257,20 +260,18 @@ impl<'f> Family<'f> {
             }
             self.projection = project(self.frame, &self.basis);
             self.reduced = FamilyMatrices::new(&self.projection, &self.springs, self.frame.floor())?;
-            (check, wanted) = measure(self)?;
+            ((check, wanted), near) = measure(self)?;
         }
-        if self.basis.len() > LARGE {
-            self.make_compact(state)?;
+        if let Some(near) = near {
+            self.make_compact(&near)?;
         }
         Ok(check)
     }
 
-    /// Adds the modes of `state`, on which the basis is trained, to the snapshots.
-    fn make_compact(&mut self, state: &SlidingState) -> Result<()> {
+    /// Adds the modes of a state, on which the basis is trained, to the snapshots.
+    fn make_compact(&mut self, modes: &ReducedModes) -> Result<()> {
         let (frame, band) = (self.frame, self.frame.band);
-        let wanted = |z| near_band(z, band);
-        let modes = self.reduced.solve(&frame.terms(state), &state.damping_weights, wanted)?;
-        self.snapshots.add(self.reduced.rotation.as_ref(), &modes);
+        self.snapshots.add(self.reduced.rotation.as_ref(), modes);
         let fewer = self.snapshots.compact(&self.projection, band[1].powi(2));
         let matrices = |(projection, basis): (Projection, Mat<f64>)| {
             let mut matrices = FamilyMatrices::new(&projection, &self.springs, frame.floor())?;

@@ -4,7 +4,7 @@ use crate::dynamics::InterfaceTerm;
 use crate::error::Result;
 use crate::linalg::c64;
 use crate::linalg::dense::{definite_pencil, product};
-use crate::linalg::unsymmetric::{complex_spectrum, eigenvalues, spectrum};
+use crate::linalg::unsymmetric::{Eigenvalues, complex_spectrum, eigenvalues, spectrum};
 use faer::{Mat, MatRef};
 
 /// (λ² + λ (Σ wᵢCᵢ + G + B c Bᵀ) + K + N + i Σ wᵢHᵢ + B k Bᵀ) y = 0 in M-orthonormal coordinates, m of them; G and N are skew.
@@ -59,6 +59,15 @@ pub(super) struct ReducedModes {
     pub(super) steepness: Vec<c64>,
 }
 
+/// All eigenvalues of a state and their vectors, in the first-order form.
+pub(super) struct ReducedSpectrum<'a> {
+    of: &'a FamilyMatrices,
+    damping: Mat<f64>,
+    stiffness: Mat<f64>,
+    losses: Option<Mat<f64>>,
+    all: Eigenvalues,
+}
+
 impl FamilyMatrices {
     /// Goes to the coordinates in which M = 1 and the reference stiffness K + Σ `springs` · bbᵀ is diagonal; `floor`
     /// \[rad/s\] is the least frequency to balance by.
@@ -82,17 +91,22 @@ impl FamilyMatrices {
         })
     }
 
-    /// The eigenvalues that are `wanted`, each corrected by the two-sided Rayleigh quotient of Q.
-    ///
-    /// With D = diag(d) and x = (D y, λ y) the problem is λx = \[0 D; −K D⁻¹ −C\]x, whose entries are of the size of
-    /// the frequencies, not of their squares: the error of the QR algorithm is then about 1e-15 d_max. The lower
-    /// half of its left vector is that of Q.
+    /// The modes that are `wanted` of a state.
     pub(super) fn solve(
         &self,
         terms: &[InterfaceTerm],
         weights: &[f64],
         wanted: impl Fn(c64) -> bool,
     ) -> Result<ReducedModes> {
+        Ok(self.spectrum(terms, weights)?.modes(wanted))
+    }
+
+    /// All eigenvalues of a state.
+    ///
+    /// With D = diag(d) and x = (D y, λ y) the problem is λx = \[0 D; −K D⁻¹ −C\]x, whose entries are of the size of
+    /// the frequencies, not of their squares: the error of the QR algorithm is then about 1e-15 d_max. The lower
+    /// half of its left vector is that of Q.
+    pub(super) fn spectrum(&self, terms: &[InterfaceTerm], weights: &[f64]) -> Result<ReducedSpectrum<'_>> {
         let (m, d) = (self.frequencies.len(), &self.frequencies);
         let (c, k) = self.matrices(terms, weights);
         let h = self.losses(weights);
@@ -105,32 +119,7 @@ impl FamilyMatrices {
                 complex_spectrum(Mat::from_fn(2 * m, 2 * m, entry).as_ref())?
             }
         };
-        let mut chosen: Vec<usize> = (0..2 * m).filter(|j| wanted(all.values[*j])).collect();
-        let before = |a: &usize, b: &usize| {
-            let (a, b) = (all.values[*a], all.values[*b]);
-            a.im.total_cmp(&b.im).then(a.re.total_cmp(&b.re))
-        };
-        chosen.sort_by(before);
-        let right = unit(Mat::from_fn(m, chosen.len(), |i, j| all.right[(i, chosen[j])] / d[i]));
-        let left = unit(Mat::from_fn(m, chosen.len(), |i, j| all.left[(m + i, chosen[j])]));
-        let (damped, mut elastic) = (real_times(&c, &right), real_times(&k, &right));
-        if let Some(h) = &h {
-            elastic += faer::Scale(c64::new(0.0, 1.0)) * real_times(h, &right);
-        }
-        let corrected = |j: usize| {
-            let lambda = all.values[chosen[j]];
-            let (mut rise, mut slope) = (c64::new(0.0, 0.0), c64::new(0.0, 0.0));
-            for i in 0..m {
-                let (z, y) = (left[(i, j)].conj(), right[(i, j)]);
-                rise += z * (lambda * lambda * y + lambda * damped[(i, j)] + elastic[(i, j)]);
-                slope += z * (lambda * 2.0 * y + damped[(i, j)]);
-            }
-            let step = rise / slope;
-            // At a coalescence the quotient says nothing.
-            (if step.norm() <= 1e-8 * lambda.norm() { lambda - step } else { lambda }, slope)
-        };
-        let (eigenvalues, steepness) = (0..chosen.len()).map(corrected).unzip();
-        Ok(ReducedModes { eigenvalues, right, left, steepness })
+        Ok(ReducedSpectrum { of: self, damping: c, stiffness: k, losses: h, all })
     }
 
     /// The eigenvalues that are `wanted`, in no order and without the correction of [`FamilyMatrices::solve`], at a third of its
@@ -203,6 +192,40 @@ impl FamilyMatrices {
         }
         let columns = Mat::from_fn(m, used.len(), |i, j| self.interface[(i, used[j])]);
         product(by_column.as_ref(), columns.transpose())
+    }
+}
+
+impl ReducedSpectrum<'_> {
+    /// The modes whose eigenvalues are `wanted`, each corrected by the two-sided Rayleigh quotient of Q.
+    pub(super) fn modes(&self, wanted: impl Fn(c64) -> bool) -> ReducedModes {
+        let (all, d) = (&self.all, &self.of.frequencies);
+        let m = d.len();
+        let mut chosen: Vec<usize> = (0..2 * m).filter(|j| wanted(all.values[*j])).collect();
+        let before = |a: &usize, b: &usize| {
+            let (a, b) = (all.values[*a], all.values[*b]);
+            a.im.total_cmp(&b.im).then(a.re.total_cmp(&b.re))
+        };
+        chosen.sort_by(before);
+        let right = unit(Mat::from_fn(m, chosen.len(), |i, j| all.right[(i, chosen[j])] / d[i]));
+        let left = unit(Mat::from_fn(m, chosen.len(), |i, j| all.left[(m + i, chosen[j])]));
+        let (damped, mut elastic) = (real_times(&self.damping, &right), real_times(&self.stiffness, &right));
+        if let Some(h) = &self.losses {
+            elastic += faer::Scale(c64::new(0.0, 1.0)) * real_times(h, &right);
+        }
+        let corrected = |j: usize| {
+            let lambda = all.values[chosen[j]];
+            let (mut rise, mut slope) = (c64::new(0.0, 0.0), c64::new(0.0, 0.0));
+            for i in 0..m {
+                let (z, y) = (left[(i, j)].conj(), right[(i, j)]);
+                rise += z * (lambda * lambda * y + lambda * damped[(i, j)] + elastic[(i, j)]);
+                slope += z * (lambda * 2.0 * y + damped[(i, j)]);
+            }
+            let step = rise / slope;
+            // At a coalescence the quotient says nothing.
+            (if step.norm() <= 1e-8 * lambda.norm() { lambda - step } else { lambda }, slope)
+        };
+        let (eigenvalues, steepness) = (0..chosen.len()).map(corrected).unzip();
+        ReducedModes { eigenvalues, right, left, steepness }
     }
 }
 

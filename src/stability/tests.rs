@@ -433,7 +433,7 @@ fn transposed_contact_swaps_left_and_right_vectors() {
         let mut system = random_system(50, 4, 1.0, 5);
         let normal = NormalLaw { bilateral: true, ..NormalLaw::linear(400.0) };
         system.pairs[0].law = Arc::new(SlidingLaw::new(normal, Coulomb { mu0: mu }, 0.0));
-        for p in &mut system.pairs[0].points {
+        for p in Arc::make_mut(&mut system.pairs[0].points) {
             p.tangents[1] = SparseVector::default();
             if transposed {
                 let t = p.tangents[0].clone();

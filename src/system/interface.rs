@@ -9,8 +9,8 @@ use std::sync::Arc;
 pub struct ContactPair {
     /// The name the case gives it.
     pub name: String,
-    /// Every point that may touch.
-    pub points: Vec<ContactPoint>,
+    /// Every point that may touch; systems that differ in laws, loads and velocities alone share them.
+    pub points: Arc<[ContactPoint]>,
     /// Forces from motion.
     pub law: Arc<dyn ContactLaw>,
     /// Closing condition: normal load or approach.

@@ -426,7 +426,7 @@ fn a_contact_that_has_travelled_slowly_stands_like_one_that_was_set_there() {
     // From the third station, where the pair stands, to the fifth.
     let end = run(&model, State::steady(&model, &steady), plan(Scheme::hht(-0.3), 0.05, 16_000)).state;
     let mut there = system.clone();
-    there.pairs[0].points = track.stations[4].clone();
+    there.pairs[0].points = track.stations[4].clone().into();
     there.pairs[0].closing = Closing::Approach(steady.approach[0]);
     let there = solve_steady(&there, &SteadyOptions::default(), &()).unwrap();
     let largest = there.points.iter().map(|p| p.forces.normal).fold(0.0, f64::max);

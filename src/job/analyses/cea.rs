@@ -5,7 +5,7 @@ use crate::case::{Case, CeaAnalysis};
 use crate::error::Result;
 use crate::job::complex::complex_result;
 use crate::job::prepared::Prepared;
-use crate::job::run::{OperatingPoint, Run};
+use crate::job::run::Run;
 
 /// Complex eigenvalue analysis.
 pub const CEA: Analysis = Analysis {
@@ -42,11 +42,11 @@ impl<'a> Planned<'a> for PlannedCea<'a> {
         let steady = run.steady()?;
         run.basis()?;
         let (basis, left_vectors) = (run.basis.take(), run.left_vectors);
-        let at = (run.prepared, &*steady);
-        let (complex, system, real) =
+        let at = (run.prepared, steady);
+        let (complex, point) =
             complex_result(at, self.wanted, basis, left_vectors, &mut run.clock, run.observer)?;
         run.results.warnings.extend(complex.modes.warnings.iter().cloned());
-        run.operating_point = Some(OperatingPoint { steady, system, real }.into());
+        run.operating_point = Some(point.into());
         run.found(complex)
     }
 }

@@ -5,7 +5,6 @@ use crate::case::SensitivityAnalysis;
 use crate::error::Result;
 use crate::job::prepared::Prepared;
 use crate::job::run::Run;
-use crate::job::sensitivity::Analysed;
 use crate::results::ComplexResult;
 
 /// Sensitivities of complex eigenvalues.
@@ -33,15 +32,8 @@ impl<'a> Planned<'a> for PlannedSensitivity {
         else {
             return Ok(());
         };
-        let analysed = Analysed {
-            prepared: run.prepared,
-            system: &point.system,
-            steady: &point.steady,
-            real: &point.real,
-            modes: &complex.modes,
-        };
-        let observer = run.observer;
-        let found = run.clock.time("sensitivities", || analysed.sensitivities(&self.0, observer))?;
+        let of = || point.sensitivities(&complex.modes, &self.0, run.observer);
+        let found = run.clock.time("sensitivities", of)?;
         run.found(found)
     }
 }

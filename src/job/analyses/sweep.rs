@@ -2,7 +2,7 @@
 
 use super::analysis::{Analysis, Planned, Scope};
 use crate::error::Result;
-use crate::job::explore::{Nominal, Studies, explore};
+use crate::job::explore::{Studies, explore};
 use crate::job::prepared::Prepared;
 use crate::job::run::Run;
 
@@ -36,15 +36,9 @@ pub(super) struct PlannedStudies {
 impl<'a> Planned<'a> for PlannedStudies {
     fn run(self: Box<Self>, run: &mut Run<'a, '_>) -> Result<()> {
         let Some(point) = run.operating_point.clone() else { return Ok(()) };
-        let nominal = Nominal {
-            prepared: run.prepared,
-            system: &point.system,
-            steady: &point.steady,
-            real: &point.real,
-        };
         let Run { sink, results, clock, known, observer, .. } = run;
         clock.time(self.phase, || {
-            explore(&nominal, self.studies, known, results, &mut |stage| sink.record(stage), *observer)
+            explore(&point, self.studies, known, results, &mut |stage| sink.record(stage), *observer)
         })
     }
 }

@@ -43,19 +43,11 @@ impl<'a> Planned<'a> for PlannedTransient<'a> {
     }
 
     fn run(self: Box<Self>, run: &mut Run<'a, '_>) -> Result<()> {
-        let Run { prepared, results, clock, sink, observer, .. } = run;
+        let Run { results, clock, sink, observer, .. } = run;
         let Some((point, complex)) = run.operating_point.clone().zip(results.get::<ComplexResult>()) else {
             return Ok(());
         };
-        let in_time = InTime {
-            system: &point.system,
-            steady: &point.steady,
-            complex,
-            real: &point.real,
-            dofs: &prepared.assembled.dofs,
-            model: &prepared.model,
-            geometry: &results.geometry,
-        };
+        let in_time = InTime { point: &point, complex, geometry: &results.geometry };
         let found = clock.time(PHASE, || in_time.run(self.wanted, self.places, *sink, *observer))?;
         sink.record(ResultStage::Transient(&found))?;
         results.warnings.extend(found.warnings.iter().cloned());

@@ -41,6 +41,7 @@ pub struct Set {
 
 /// A case with numbers to be found.
 pub struct CaseModel<'a> {
+    prepared: &'a Prepared<'a>,
     /// With nothing to do but what is compared.
     case: Case,
     coordinates: &'a [Coordinate<'a>],
@@ -56,16 +57,16 @@ impl<'a> CaseModel<'a> {
     /// # Errors
     /// Modes that cannot be computed.
     pub fn new(
-        prepared: &Prepared,
+        prepared: &'a Prepared<'a>,
         coordinates: &'a [Coordinate<'a>],
         measured: &'a Measurements,
     ) -> Result<Self> {
         let case = lean(prepared.case, measured);
         let value = |c: &Coordinate| Ok(c.x(case.parameter(&c.parameter.path[0])?.value));
         let start: Vec<f64> = coordinates.iter().map(value).collect::<Result<_>>()?;
-        let mut model =
-            CaseModel { case, coordinates, start, sets: Vec::new(), responses: &measured.responses };
-        let here = Prepared::new(&model.case)?;
+        let responses = &measured.responses;
+        let mut model = CaseModel { prepared, case, coordinates, start, sets: Vec::new(), responses };
+        let here = prepared.rebuilt(&model.case)?;
         let sets = measured.modes.iter().map(|facts| model.set(&here, facts)).collect::<Result<_>>()?;
         drop(here);
         model.sets = sets;
@@ -92,7 +93,7 @@ impl<'a> CaseModel<'a> {
                 Ok(Set { start, levels, names, like })
             }
             ModeKind::Unstable => {
-                let sliding = Box::new(Sliding::new(prepared)?);
+                let sliding = Box::new(Sliding::new(prepared)?.0);
                 let levels = sliding.levels();
                 let names = sliding.names(&levels);
                 let like = vec![false; levels.len()];
@@ -128,20 +129,22 @@ impl<'a> CaseModel<'a> {
     }
 
     fn case_at(&self, x: &[f64]) -> Result<Case> {
-        let case = self.case.clone();
-        self.coordinates.iter().zip(self.values(x)).try_fold(case, |case, (c, value)| with(&case, c, value))
+        let all = self.coordinates.iter().zip(self.values(x));
+        self.case.with_parameters(
+            all.flat_map(|(c, value)| c.parameter.path.iter().map(move |path| (path, value))),
+        )
     }
 
     /// Growth rate \[1/s\] of every level at `x`; none of real modes.
     pub fn growth(&self, x: &[f64]) -> Result<Vec<Option<f64>>> {
         let case = self.case_at(x)?;
-        let prepared = Prepared::new(&case)?;
+        let prepared = self.prepared.rebuilt(&case)?;
         let mut all = Vec::new();
         for set in &self.sets {
             match &set.start {
                 LevelSource::Real { .. } => all.extend(set.levels.iter().map(|_| None)),
                 LevelSource::Unstable(start) => {
-                    let here = Sliding::new(&prepared)?;
+                    let (here, _) = Sliding::new(&prepared)?;
                     let picks = self.follow_sliding(start, &set.levels, (x, &here))?;
                     all.extend(here.growth(&picks));
                 }
@@ -151,7 +154,7 @@ impl<'a> CaseModel<'a> {
     }
 
     fn follow_sliding(&self, start: &Sliding, levels: &Picks, to: (&[f64], &Sliding)) -> Result<Picks> {
-        let solve = |x: &[f64]| Sliding::new(&Prepared::new(&self.case_at(x)?)?);
+        let solve = |x: &[f64]| Ok(Sliding::new(&self.prepared.rebuilt(&self.case_at(x)?)?)?.0);
         let follow = |a: &Sliding, picks: &Picks, b: &Sliding| a.follow(picks, b);
         Path { solve: &solve, follow: &follow }.along((&self.start, start, levels), to)
     }
@@ -192,7 +195,7 @@ impl<'a> CaseModel<'a> {
             };
             let build = |value: f64| {
                 let case = with(case, c, value)?;
-                let other = Prepared::new(&case)?;
+                let other = prepared.rebuilt(&case)?;
                 same_structure(prepared, &other)?;
                 views.iter().map(|view| view.of(&other)).collect()
             };
@@ -207,7 +210,7 @@ impl<'a> CaseModel<'a> {
     fn at(&self, x: &[f64], responses: &[MeasuredFrfData]) -> Result<Computed> {
         let case = self.case_at(x)?;
         let values = self.values(x);
-        let prepared = Prepared::new(&case)?;
+        let prepared = self.prepared.rebuilt(&case)?;
         let views = self.views(&prepared, responses)?;
         let mut changes = self.changes((&case, &prepared), &views, &values)?;
         let mut views = views.into_iter();
@@ -226,7 +229,7 @@ impl<'a> CaseModel<'a> {
                     };
                     let here = Solved::new(&prepared, wanted, sensors, Some(solved))?;
                     let solve = |x: &[f64]| {
-                        Solved::new(&Prepared::new(&self.case_at(x)?)?, wanted, None, Some(solved))
+                        Solved::new(&self.prepared.rebuilt(&self.case_at(x)?)?, wanted, None, Some(solved))
                     };
                     let follow = |a: &Solved, picks: &Picks, b: &Solved| a.follow(picks, b);
                     let path = Path { solve: &solve, follow: &follow };
@@ -252,7 +255,7 @@ impl<'a> CaseModel<'a> {
                     }));
                 }
                 LevelSource::Unstable(start) => {
-                    let here = Sliding::new(&prepared)?;
+                    let (here, point) = Sliding::new(&prepared)?;
                     let picks = self.follow_sliding(start, &set.levels, (x, &here))?;
                     let unknowns: Vec<(Vec<CaseScalar>, f64)> = self
                         .coordinates
@@ -260,7 +263,7 @@ impl<'a> CaseModel<'a> {
                         .zip(&values)
                         .map(|(c, value)| Ok((scalars(&case, c)?, c.rate(*value))))
                         .collect::<Result<_>>()?;
-                    levels.extend(here.slopes(&prepared, &picks, &unknowns)?);
+                    levels.extend(here.slopes(&point, &picks, &unknowns)?);
                 }
             }
         }
@@ -373,14 +376,10 @@ fn lean(case: &Case, measured: &Measurements) -> Case {
     let frf = case.frf.iter().filter(|(name, _)| compared(name));
     let cea = case.cea.clone().map(|cea| CeaAnalysis { certify: Some(false), confirm: false, ..cea });
     Case {
-        sensitivity: None,
         transient: None,
         frf: frf.map(|(name, frf)| (name.clone(), frf.clone())).collect(),
         measured: BTreeMap::new(),
-        calibrate: None,
-        sweep: BTreeMap::new(),
-        map: BTreeMap::new(),
         cea,
-        ..case.clone()
+        ..case.without_studies()
     }
 }

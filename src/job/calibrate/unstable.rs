@@ -2,45 +2,38 @@
 
 use super::super::clock::Clock;
 use super::super::complex::complex_result;
+use super::super::operating_point::OperatingPoint;
 use super::super::prepared::Prepared;
 use super::super::scalars::CaseScalar;
-use super::super::sensitivity::Analysed;
 use super::follow::{Picks, most_alike};
 use crate::calibration::Level;
-use crate::equilibrium::{self, SteadySliding};
+use crate::equilibrium;
 use crate::error::{Error, Result};
 use crate::linalg::dense::mac;
-use crate::modal::RealModes;
 use crate::results::ComplexResult;
 use crate::stability::{ComplexMode, Sensitivity};
-use crate::system::System;
 use std::f64::consts::TAU;
 
 /// Half of this share of |λ| between two modes counts as much as shapes that have nothing in common.
 const FAR: f64 = 0.04;
 
 /// The complex modes of a case at some values of the parameters.
-pub struct Sliding {
-    steady: SteadySliding,
-    complex: ComplexResult,
-    system: System,
-    real: RealModes,
-}
+pub struct Sliding(ComplexResult);
 
 impl Sliding {
-    /// Steady sliding and its complex modes.
-    pub fn new(prepared: &Prepared) -> Result<Sliding> {
+    /// Those about steady sliding, and that operating point.
+    pub fn new<'a>(prepared: &'a Prepared) -> Result<(Sliding, OperatingPoint<'a>)> {
         let options = prepared.steady_options();
         let steady = equilibrium::solve_steady(&prepared.system, &options, &())?;
         let missing = || Error::analysis("complex eigenvalues", "no [cea] in the case", "Give the case one");
         let cea = prepared.case.cea.as_ref().ok_or_else(missing)?;
-        let at = (prepared, &steady);
-        let (complex, system, real) = complex_result(at, cea, None, true, &mut Clock::default(), &())?;
-        Ok(Sliding { steady, complex, system: system.into_owned(), real })
+        let at = (prepared, steady.into());
+        let (complex, point) = complex_result(at, cea, None, true, &mut Clock::default(), &())?;
+        Ok((Sliding(complex), point))
     }
 
     fn modes(&self) -> &[ComplexMode] {
-        &self.complex.modes.modes
+        &self.0.modes.modes
     }
 
     /// The modes that grow, one a level.
@@ -50,8 +43,7 @@ impl Sliding {
 
     /// Name of each of `levels`.
     pub fn names(&self, levels: &Picks) -> Vec<String> {
-        let name =
-            |level: &Vec<usize>| format!("unstable, {}", first_part(&self.complex.participation[level[0]]));
+        let name = |level: &Vec<usize>| format!("unstable, {}", first_part(&self.0.participation[level[0]]));
         levels.iter().map(name).collect()
     }
 
@@ -63,7 +55,7 @@ impl Sliding {
     /// `levels` of `self` among the modes of `other`, and whether that is sure: by shape, less what λ moved. Where two modes
     /// have merged their shapes are one, and λ decides which of them grows. With another mesh λ alone decides.
     pub fn follow(&self, levels: &Picks, other: &Sliding) -> (Picks, bool) {
-        let same_size = self.system.n_dofs() == other.system.n_dofs();
+        let same_size = self.0.dofs.n_dofs() == other.0.dofs.n_dofs();
         let mac = |l: usize, k: usize| {
             let (a, b) = (&self.modes()[levels[l][0]], &other.modes()[k]);
             let moved = (a.eigenvalue - b.eigenvalue).norm() / a.eigenvalue.norm();
@@ -77,24 +69,17 @@ impl Sliding {
     /// come with their dp/dx. The steady state follows every scalar.
     pub fn slopes(
         &self,
-        prepared: &Prepared,
+        point: &OperatingPoint,
         levels: &Picks,
         unknowns: &[(Vec<CaseScalar>, f64)],
     ) -> Result<Vec<Option<Level>>> {
         let found: Vec<usize> = levels.iter().filter_map(|level| level.first().copied()).collect();
         let modes: Vec<&ComplexMode> = found.iter().map(|k| &self.modes()[*k]).collect();
-        let sensitivity = Sensitivity::new(&self.system, &self.steady, &self.real, &modes)?;
-        let analysed = Analysed {
-            prepared,
-            system: &self.system,
-            steady: &self.steady,
-            real: &self.real,
-            modes: &self.complex.modes,
-        };
+        let sensitivity = Sensitivity::new(&point.system, &point.steady, &point.real, &modes)?;
         let mut slopes = vec![vec![0.0; unknowns.len()]; modes.len()];
         for (j, (scalars, rate)) in unknowns.iter().enumerate() {
             for scalar in scalars {
-                let rates = analysed.rates(&sensitivity, scalar)?;
+                let rates = point.rates(&sensitivity, scalar)?;
                 for (slopes, (of, mode)) in slopes.iter_mut().zip(rates.iter().zip(&modes)) {
                     slopes[j] += rate * of.value.im / mode.eigenvalue.im;
                 }

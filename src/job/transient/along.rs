@@ -44,7 +44,7 @@ impl InTime<'_> {
         let own = &self.complex.modes.modes[mode];
         let moves = |node: &[c64; 6]| (0..3).map(|k| node[k].norm_sqr()).sum::<f64>().sqrt();
         let largest = self.complex.shape(mode).iter().map(moves).fold(f64::MIN_POSITIVE, f64::max);
-        let filter = modal_filter(self.system, self.steady, own)?;
+        let filter = modal_filter(&self.point.system, &self.point.steady, own)?;
         Ok(Along { mode, eigenvalue: own.eigenvalue, shape: own.right.clone(), filter, largest })
     }
 

@@ -111,7 +111,7 @@ impl InTime<'_> {
         let mut all: Vec<String> =
             fastest.and_then(|(_, hz)| long_steps(hz, step, taken)).into_iter().collect();
         let grows = self.complex.modes.modes.iter().any(|mode| mode.unstable());
-        for pair in &self.system.pairs {
+        for pair in &self.point.system.pairs {
             if let (Closing::Approach(_), Some(HoldChoice::Load)) = (pair.closing, wanted.hold) {
                 all.push(format!(
                     "The contact {} is closed by an approach, and keeps it: `transient.hold = \"load\"` is for contacts with a `load`.",

@@ -64,6 +64,7 @@ impl InTime<'_> {
         sink: &mut dyn ResultSink,
         observer: &dyn Observer,
     ) -> Result<TransientResult> {
+        let point = self.point;
         let beside = first_steps(self, wanted, &places, observer)?;
         let start = self.start(wanted, &places)?;
         let loadings = self.loadings(wanted)?;
@@ -77,8 +78,8 @@ impl InTime<'_> {
         let InitialState { state: origin, at_rest } = start;
         let small = reduced.as_ref().map(|reduced| reduced.steady(&origin));
         let steady = small.as_ref().unwrap_or(&origin);
-        let system = reduced.as_ref().map_or(self.system, |reduced| &reduced.system);
-        let profiles: Vec<TimeProfile> = self
+        let system = reduced.as_ref().map_or(&*point.system, |reduced| &reduced.system);
+        let profiles: Vec<TimeProfile> = point
             .system
             .pairs
             .iter()
@@ -98,18 +99,18 @@ impl InTime<'_> {
         let nodes = Snapshots {
             every: wanted.fields_every.map_or(steps, |every| places::steps(every, wanted.time_step)),
             geometry: self.geometry,
-            dofs: self.dofs,
+            dofs: &point.prepared.assembled.dofs,
             reduced: reduced.as_ref(),
             origin: &steady.displacement,
         };
         let top = WATCHED * self.complex.band_hz[1];
         // Real modes are complete up to their highest.
-        let highest = (0..self.real.len()).map(|k| self.real.frequency_hz(k)).fold(0.0, f64::max);
-        let modes = (&self.real.shapes, highest);
+        let highest = (0..point.real.len()).map(|k| point.real.frequency_hz(k)).fold(0.0, f64::max);
+        let modes = (&point.real.shapes, highest);
         let accumulator =
             acoustics.map(|acoustics| SoundAccumulator::new(acoustics, modes, (plan.step, steps)));
-        let mass = reduced.is_none().then_some(&*self.system.structure.mass);
-        let modal = accumulator.as_ref().map(|_| ModalMotion::new(self.real, mass));
+        let mass = reduced.is_none().then_some(&*point.system.structure.mass);
+        let modal = accumulator.as_ref().map(|_| ModalMotion::new(&point.real, mass));
         let along = disturbed.as_ref().map(|along| along.eigenvalue);
         let mut recorder = Recorder::new(system, steady, &model, (probes, gauges), disturbed, modal);
         if let Some(motion) = recorder.shown.first_mut().filter(|shown| shown.measured.is_empty()) {
@@ -117,7 +118,7 @@ impl InTime<'_> {
         }
         let cycle = (HarmonicFields::new(nodes, plan.step, steps), top);
         let snapshots = wanted.fields_every.map(|_| nodes);
-        let deflections = Deflections::new(self.model, nodes, steps);
+        let deflections = Deflections::new(&point.prepared.model, nodes, steps);
         let mut history_writer = HistoryWriter::new(recorder, snapshots, (cycle, deflections), sink);
         let mut marched = history_writer.begin(start, &model, &plan)?;
         march_on(&mut history_writer, (&model, &plan), &mut marched, observer)?;
@@ -140,7 +141,7 @@ impl InTime<'_> {
             sound.name_tones(found.spectra.iter().flat_map(|of| &of.peaks));
         }
         let first = |name: &str, count: usize| history_writer.sink.recorded(name, 0..count);
-        let own = (self.steady, self.complex);
+        let own = (&*point.steady, self.complex);
         let check = |reduced| reduced_check(reduced, own, beside.as_ref(), &first, observer);
         let reduced_check = reduced.as_ref().map(check).transpose()?;
         let HistoryWriter { recorder, cycle, deflections, .. } = history_writer;
@@ -151,7 +152,7 @@ impl InTime<'_> {
             time_step: plan.step,
             rows: steps + 1,
             scheme: scheme(wanted.scheme).1,
-            set_valued: set_valued(self.system),
+            set_valued: set_valued(&point.system),
             reduced: reduced.as_ref().map(|r| [r.modes, r.basis.ncols() - r.modes]),
             reduced_check,
             shown: recorder.shown.into_iter().map(|shown| shown.channel).collect(),
@@ -179,7 +180,7 @@ impl InTime<'_> {
         let stations = stations.flat_map(|point| [&point.normal, &point.tangents[0], &point.tangents[1]]);
         let pushed = pushes.iter().map(|push| &push.direction);
         let forces: Vec<SparseVector> = pushed.chain(stations).cloned().collect();
-        let reduced = reduce(self.system, self.steady, self.real, &forces)?;
+        let reduced = reduce(&self.point.system, &self.point.steady, &self.point.real, &forces)?;
         pushes.iter_mut().for_each(|push| push.direction = reduced.form(&push.direction));
         probes.iter_mut().for_each(|probe| probe.direction = reduced.form(&probe.direction));
         for gauge in gauges {

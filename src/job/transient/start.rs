@@ -25,14 +25,15 @@ impl InTime<'_> {
     pub(super) fn start(&self, wanted: &TransientAnalysis, places: &TransientPlaces) -> Result<InitialState> {
         let velocity = |name: &str| profile(wanted.slide.get(name).map(|slide| &slide.course)).factor(0.0);
         let load = |name: &str| profile(wanted.load.get(name)).factor(0.0);
+        let pairs = &self.point.system.pairs;
         let at_rest = wanted.start == StartChoice::Rest
-            || (!self.system.pairs.is_empty() && self.system.pairs.iter().all(|p| velocity(&p.name) == 0.0));
+            || (!pairs.is_empty() && pairs.iter().all(|p| velocity(&p.name) == 0.0));
         let as_given = |name: &str| velocity(name) == 1.0 && load(name) == 1.0;
         let pushed = places.pushes.iter().any(|push| push.factor(0.0) != 0.0);
-        if !at_rest && !pushed && self.system.pairs.iter().all(|pair| as_given(&pair.name)) {
-            return Ok(InitialState { state: self.steady.clone(), at_rest });
+        if !at_rest && !pushed && pairs.iter().all(|pair| as_given(&pair.name)) {
+            return Ok(InitialState { state: (*self.point.steady).clone(), at_rest });
         }
-        let mut system = self.system.clone();
+        let mut system = (*self.point.system).clone();
         for (pair, still) in system.pairs.iter_mut().zip(&places.still) {
             if at_rest || velocity(&pair.name) == 0.0 {
                 pair.law = still.law.clone();
@@ -49,20 +50,20 @@ impl InTime<'_> {
 
     /// How the approach of each pair follows its load, where that runs in time.
     pub(super) fn loadings(&self, wanted: &TransientAnalysis) -> Result<Vec<Option<Loading>>> {
-        let pairs = self.system.pairs.iter().enumerate();
+        let pairs = self.point.system.pairs.iter().enumerate();
         let loading = |(k, pair): (usize, &ContactPair)| {
             let course = wanted.load.get(&pair.name);
             let (Some(course), Closing::Load(_)) = (course, pair.closing) else { return Ok(None) };
             let factors = course.range();
             let approach = |part: usize| {
                 let share = part as f64 / (EQUILIBRIA - 1) as f64;
-                let mut system: System = self.system.clone();
+                let mut system: System = (*self.point.system).clone();
                 press(&mut system.pairs[k].closing, factors[0] + share * (factors[1] - factors[0]));
                 Ok(solve_steady(&system, &SteadyOptions::default(), &())?.approach[k])
             };
             let approaches = match wanted.hold_of(&pair.name) {
                 HoldChoice::Approach => (0..EQUILIBRIA).map(approach).collect::<Result<Vec<f64>>>()?,
-                HoldChoice::Load => vec![self.steady.approach[k]],
+                HoldChoice::Load => vec![self.point.steady.approach[k]],
             };
             Ok(Some(Loading { profile: profile(Some(course)), approaches, factors }))
         };
@@ -75,7 +76,7 @@ impl InTime<'_> {
             (HoldChoice::Load, Closing::Load(load)) => Some(load),
             _ => None,
         };
-        self.system.pairs.iter().map(load).collect()
+        self.point.system.pairs.iter().map(load).collect()
     }
 }
 

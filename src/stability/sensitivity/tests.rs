@@ -83,14 +83,14 @@ fn varied(base: &System, scalar: Scalar, factor: f64) -> System {
             system.structure.damping.hysteretic = lossy.map(|h| part(h, &|_, _| factor).into());
         }
         Scalar::Lever => {
-            for point in &mut system.pairs[0].points {
+            for point in Arc::make_mut(&mut system.pairs[0].points) {
                 for vector in point.tangents.iter_mut().chain([&mut point.normal]) {
                     let turned = vector.iter().map(|(i, x)| (i, if i % 2 == 0 { x * factor } else { x }));
                     *vector = SparseVector::from_entries(turned);
                 }
             }
         }
-        Scalar::Gap => system.pairs[0].points.iter_mut().for_each(|p| p.gap *= factor),
+        Scalar::Gap => Arc::make_mut(&mut system.pairs[0].points).iter_mut().for_each(|p| p.gap *= factor),
     }
     system.pairs[0].law = law(normal, mu_0, alpha, regularisation);
     with_modal(&mut system, base.structure.damping.modal.is_some());
