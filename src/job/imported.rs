@@ -9,7 +9,8 @@ use crate::linalg::{SparseMatrix, SparseVector};
 use crate::structure::{Assembled, FreeDof};
 use crate::system::{ContactPoint, Coupling, Given, hysteretic_skew, is_unsymmetric, mass_skew, split};
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// The names of the six motions in the table of rows.
 const MOTIONS: [&str; 6] = ["ux", "uy", "uz", "rx", "ry", "rz"];
@@ -19,6 +20,26 @@ const ROW_COLUMNS: [&[&str]; 2] =
 /// The same of the table of contact points.
 const POINT_COLUMNS: [&[&str]; 2] =
     [&["normal", "t1"], &["normal", "t1", "t2", "weight", "gap", "x", "y", "z"]];
+
+/// Matrices that were read, by their files: cases whose factors of terms differ share them.
+#[derive(Debug, Default)]
+pub struct MatrixFiles(Mutex<BTreeMap<PathBuf, Arc<MarketMatrix>>>);
+
+impl MatrixFiles {
+    /// The matrix in a file, kept for the next one who asks where `again` says that there may be one; `columns` as in
+    /// [`matrix_market::read`].
+    fn read(&self, path: &Path, columns: usize, again: bool) -> Result<Arc<MarketMatrix>> {
+        let files = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(known) = files().get(path) {
+            return Ok(known.clone());
+        }
+        let matrix = Arc::new(matrix_market::read(path, columns)?);
+        if again {
+            files().insert(path.into(), matrix.clone());
+        }
+        Ok(matrix)
+    }
+}
 
 /// The structure of a case that gives matrices.
 pub struct ImportedModel {
@@ -34,19 +55,22 @@ pub struct ImportedModel {
     pub warnings: Vec<String>,
 }
 
-/// Reads and splits the matrices of a case.
+/// Reads the matrices of a case, those of them that are not in `files`, and splits them.
 ///
 /// # Errors
 /// Every fault of every file.
-pub fn read_model(case: &Case, matrices: &Matrices) -> Result<ImportedModel> {
+pub fn read_model(case: &Case, matrices: &Matrices, files: &MatrixFiles) -> Result<ImportedModel> {
     let (mut faults, mut warnings) = (Faults::new(), Vec::new());
     let place = |key: &str, file: &str| format!("`matrices.{key}` {}", case.folder.join(file).display());
-    let mut read = |file: &str, columns| faults.take(matrix_market::read(&case.folder.join(file), columns));
+    // Without terms nothing of the matrices varies.
+    let again = !matrices.term.is_empty();
+    let mut read = |file: &str, columns| faults.take(files.read(&case.folder.join(file), columns, again));
     // K has entries in every column; the other matrices may be nearly empty.
     let stiffness = read(&matrices.stiffness, 0);
     let columns = stiffness.as_ref().map_or(0, |k| k.re.ncols());
     let mass = read(&matrices.mass, columns);
-    let damping: Option<Option<MarketMatrix>> = matrices.damping.as_ref().map(|file| read(file, columns));
+    let damping: Option<Option<Arc<MarketMatrix>>> =
+        matrices.damping.as_ref().map(|file| read(file, columns));
     let load = matrices.load.as_ref().map(|file| read(file, columns).map(|f| (file, f)));
     let rows = mass.as_ref().or(stiffness.as_ref()).map_or(0, |m| m.re.nrows());
     let known = rows > 0;
@@ -59,7 +83,7 @@ pub fn read_model(case: &Case, matrices: &Matrices) -> Result<ImportedModel> {
         None => vec![0.0; rows],
         Some((file, f)) => faults.take(read_load(&place("load", file), &f, rows)).unwrap_or_default(),
     };
-    let terms = read_terms(case, matrices, rows, &mut faults, &mut warnings);
+    let terms = read_terms((case, files), matrices, rows, &mut faults, &mut warnings);
     let all = mass.zip(stiffness).filter(|_| !matches!(damping, Some(None)));
     let Some(((mass, stiffness), terms)) = all.zip(terms) else {
         return faults.into_result(()).map(|()| unreachable!("a file that is missing is a fault"));
@@ -72,8 +96,8 @@ pub fn read_model(case: &Case, matrices: &Matrices) -> Result<ImportedModel> {
         .map_or_else(|| "`matrices.term`".to_string(), |file| place("damping", file));
     let [mass, damping, stiffness] = [Some(mass), damping.flatten(), Some(stiffness)];
     let [mass_terms, damping_terms, stiffness_terms] = terms;
-    warnings.extend(one_sided(&stiffness_place, stiffness.as_ref()));
-    warnings.extend(one_sided(&damping_place, damping.as_ref()));
+    warnings.extend(one_sided(&stiffness_place, stiffness.as_deref()));
+    warnings.extend(one_sided(&damping_place, damping.as_deref()));
     // Terms of the stiffness that are not symmetric stay whole beside it.
     let unsymmetric = |term: &FactoredMatrix| term.matrix.im.is_none() && is_unsymmetric(&term.matrix.re);
     let (friction, stiffness_terms): (Vec<_>, Vec<_>) = stiffness_terms.into_iter().partition(unsymmetric);
@@ -84,8 +108,8 @@ pub fn read_model(case: &Case, matrices: &Matrices) -> Result<ImportedModel> {
     let of_losses: fn(&str, &MarketMatrix) -> Option<Fault> =
         |place, k| k.im.as_ref().and_then(|im| hysteretic_skew(place, im));
     let blamed = [
-        unsymmetric_files((&mass_place, mass.as_ref()), &mass_terms, of_mass),
-        unsymmetric_files((&stiffness_place, stiffness.as_ref()), &stiffness_terms, of_losses),
+        unsymmetric_files((&mass_place, mass.as_deref()), &mass_terms, of_mass),
+        unsymmetric_files((&stiffness_place, stiffness.as_deref()), &stiffness_terms, of_losses),
     ];
     let sums = (with_terms(mass, mass_terms), with_terms(stiffness, stiffness_terms));
     let (Some(mass), Some(stiffness)) = sums else { unreachable!("both have a term: themselves") };
@@ -118,7 +142,7 @@ pub fn read_model(case: &Case, matrices: &Matrices) -> Result<ImportedModel> {
 struct FactoredMatrix {
     factor: f64,
     place: String,
-    matrix: MarketMatrix,
+    matrix: Arc<MarketMatrix>,
 }
 
 /// The faults that `skew` finds of the files of a sum, `first` and the terms, each by its own place.
@@ -128,13 +152,13 @@ fn unsymmetric_files(
     skew: fn(&str, &MarketMatrix) -> Option<Fault>,
 ) -> Vec<Fault> {
     let first = first.1.map(|matrix| (first.0, matrix));
-    let terms = terms.iter().map(|term| (term.place.as_str(), &term.matrix));
+    let terms = terms.iter().map(|term| (term.place.as_str(), &*term.matrix));
     first.into_iter().chain(terms).filter_map(|(place, matrix)| skew(place, matrix)).collect()
 }
 
 /// Terms added to M, C and K, each of `rows` rows and columns; none when there is a fault.
 fn read_terms(
-    case: &Case,
+    (case, files): (&Case, &MatrixFiles),
     matrices: &Matrices,
     rows: usize,
     faults: &mut Faults,
@@ -143,11 +167,11 @@ fn read_terms(
     let mut terms = [Vec::new(), Vec::new(), Vec::new()];
     let earlier = faults.0.len();
     for (name, term) in &matrices.term {
-        let files = [("mass", &term.mass), ("damping", &term.damping), ("stiffness", &term.stiffness)];
-        for ((key, file), terms) in files.into_iter().zip(&mut terms) {
+        let named = [("mass", &term.mass), ("damping", &term.damping), ("stiffness", &term.stiffness)];
+        for ((key, file), terms) in named.into_iter().zip(&mut terms) {
             let path = file.as_ref().map(|file| case.folder.join(file));
             let Some(path) = path else { continue };
-            let Some(matrix) = faults.take(matrix_market::read(&path, rows)) else { continue };
+            let Some(matrix) = faults.take(files.read(&path, rows, true)) else { continue };
             let (m, n) = (matrix.re.nrows(), matrix.re.ncols());
             if rows > 0 && (m, n) != (rows, rows) {
                 faults.push(Fault::new(
@@ -179,16 +203,17 @@ fn one_sided(place: &str, matrix: Option<&MarketMatrix>) -> Option<String> {
 }
 
 /// The matrix with what is added to it, if there is anything.
-fn with_terms(matrix: Option<MarketMatrix>, terms: Vec<FactoredMatrix>) -> Option<MarketMatrix> {
+fn with_terms(matrix: Option<Arc<MarketMatrix>>, terms: Vec<FactoredMatrix>) -> Option<Arc<MarketMatrix>> {
     if terms.is_empty() {
         return matrix;
     }
     let terms = terms.into_iter().map(|term| (term.factor, term.matrix));
-    let all: Vec<(f64, MarketMatrix)> = matrix.into_iter().map(|matrix| (1.0, matrix)).chain(terms).collect();
+    let all: Vec<(f64, Arc<MarketMatrix>)> =
+        matrix.into_iter().map(|matrix| (1.0, matrix)).chain(terms).collect();
     let sum = |parts: Vec<(f64, &SparseMatrix)>| (!parts.is_empty()).then(|| add_scaled(&parts));
     let re = sum(all.iter().map(|(factor, matrix)| (*factor, &matrix.re)).collect())?;
     let im = sum(all.iter().filter_map(|(factor, matrix)| Some((*factor, matrix.im.as_ref()?))).collect());
-    Some(MarketMatrix { re, im })
+    Some(MarketMatrix { re, im }.into())
 }
 
 /// The one column of a real matrix with `n` rows.

@@ -1,15 +1,18 @@
 //! The mesh of a case: read from a file, or generated.
 
+use super::imported::MatrixFiles;
 use crate::case::{AnnulusMesh, Case, MeshSource, PlateMesh, RigMesh, SpringPer};
 use crate::error::{Error, Fault, Faults, Result};
 use crate::mesh::generate::{self, BarSide, BarSpec, DiscSpec, Faces, Grading, PlateSpec, RigSpec};
 use crate::mesh::{self, Mesh};
 use std::sync::Arc;
 
-/// The mesh of a case as it was read or generated, before anything is placed.
+/// What a model is made from, as it was read or generated.
 #[derive(Debug, Default)]
-pub(super) struct CheckedMesh {
+pub(super) struct CaseFiles {
+    /// Before anything is placed; empty where the case has none.
     pub(super) mesh: Arc<Mesh>,
+    pub(super) matrices: MatrixFiles,
     /// What the user should know of it.
     pub(super) warnings: Vec<String>,
 }
@@ -25,8 +28,8 @@ pub(super) fn same_mesh(a: &Case, b: &Case) -> bool {
 }
 
 /// The mesh of the case, checked; an empty one where it has none.
-pub(super) fn read_mesh(case: &Case) -> Result<CheckedMesh> {
-    let Some(source) = &case.mesh else { return Ok(CheckedMesh::default()) };
+pub(super) fn read_mesh(case: &Case) -> Result<CaseFiles> {
+    let Some(source) = &case.mesh else { return Ok(CaseFiles::default()) };
     let mesh = match source {
         MeshSource::File { file, unit } => {
             mesh::read(&case.folder.join(file), mesh::unit_in_metres(unit.word()))
@@ -55,7 +58,7 @@ pub(super) fn read_mesh(case: &Case) -> Result<CheckedMesh> {
     let at_key = |fault: Fault| Fault { place: format!("`mesh.{key}`: {}", fault.place), ..fault };
     Faults(diagnosis.faults.0.into_iter().map(at_key).collect()).into_result(())?;
     let warnings = diagnosis.warnings.iter().map(Fault::warning).collect();
-    Ok(CheckedMesh { mesh: mesh.into(), warnings })
+    Ok(CaseFiles { mesh: mesh.into(), warnings, ..CaseFiles::default() })
 }
 
 /// Faults of a generator at the keys of the case that give its sizes.

@@ -4,7 +4,7 @@ use super::contacts::{arrows, contact_pairs};
 use super::discs::discs;
 use super::imported::read_model;
 use super::links::in_terms_of_the_case;
-use super::mesh::{CheckedMesh, read_mesh, same_mesh};
+use super::mesh::{CaseFiles, read_mesh, same_mesh};
 use super::model::whole_model;
 use super::place::place;
 use super::regions::Regions;
@@ -34,8 +34,8 @@ pub struct Prepared<'a> {
     pub system: System,
     /// Things the user should know.
     pub warnings: Vec<String>,
-    /// Its mesh, before anything was placed.
-    mesh: Arc<CheckedMesh>,
+    /// What it was made from.
+    files: Arc<CaseFiles>,
 }
 
 impl<'a> Prepared<'a> {
@@ -44,27 +44,27 @@ impl<'a> Prepared<'a> {
     /// # Errors
     /// Every fault of the mesh and of the names that tie the case to it.
     pub fn new(case: &'a Case) -> Result<Self> {
-        let mesh = read_mesh(case).map(Arc::new);
-        mesh.and_then(|mesh| Self::build(case, mesh)).map_err(|error| case.places.locate(error))
+        let files = read_mesh(case).map(Arc::new);
+        files.and_then(|files| Self::build(case, files)).map_err(|error| case.places.locate(error))
     }
 
-    /// A case that differs from this one in scalars, on the same mesh as long as that does not depend on them.
+    /// A case that differs from this one in scalars. Its mesh, unless that depends on them, and matrices with terms are not read again.
     ///
     /// # Errors
     /// As [`Prepared::new`].
     pub fn rebuilt<'b>(&self, case: &'b Case) -> Result<Prepared<'b>> {
         match same_mesh(self.case, case) {
-            true => Prepared::build(case, self.mesh.clone()).map_err(|error| case.places.locate(error)),
+            true => Prepared::build(case, self.files.clone()).map_err(|error| case.places.locate(error)),
             false => Prepared::new(case),
         }
     }
 
-    fn build(case: &'a Case, mesh: Arc<CheckedMesh>) -> Result<Self> {
-        let mut regions = Regions::new(mesh.mesh.clone(), case);
+    fn build(case: &'a Case, files: Arc<CaseFiles>) -> Result<Self> {
+        let mut regions = Regions::new(files.mesh.clone(), case);
         if let Some(matrices) = &case.matrices {
-            return Self::imported(case, (mesh, regions), matrices);
+            return Self::imported(case, (files, regions), matrices);
         }
-        let mut warnings = mesh.warnings.clone();
+        let mut warnings = files.warnings.clone();
         let mut faults = Faults::new();
         let named = faults.take(regions.check_named(case)).is_some();
         for (name, contact) in case.contact.iter().filter(|_| named) {
@@ -83,16 +83,16 @@ impl<'a> Prepared<'a> {
             prestress: case.prestress.then(|| Arc::new(assembled.prestress(model.clone())) as Arc<_>),
             coupling: None,
         };
-        Ok(Prepared { case, regions, model, assembled, system, warnings, mesh })
+        Ok(Prepared { case, regions, model, assembled, system, warnings, files })
     }
 
     /// The same for a case that gives the matrices.
     fn imported(
         case: &'a Case,
-        (mesh, regions): (Arc<CheckedMesh>, Regions),
+        (files, regions): (Arc<CaseFiles>, Regions),
         matrices: &Matrices,
     ) -> Result<Self> {
-        let imported = read_model(case, matrices)?;
+        let imported = read_model(case, matrices, &files.matrices)?;
         let model = Model { nodes: imported.nodes, ..Model::default() };
         let assembled = Arc::new(imported.assembled);
         let pairs = contact_pairs(case, &regions, &model, &assembled.dofs)?;
@@ -103,7 +103,7 @@ impl<'a> Prepared<'a> {
             prestress: None,
             coupling: imported.coupling,
         };
-        Ok(Prepared { case, regions, model, assembled, system, warnings: imported.warnings, mesh })
+        Ok(Prepared { case, regions, model, assembled, system, warnings: imported.warnings, files })
     }
 
     /// The same with its matrices factorised by `engine`.
@@ -227,6 +227,29 @@ mod tests {
         let there = all();
         std::fs::remove_file(file).unwrap();
         assert_eq!(all(), there);
+        assert!(Prepared::new(&case).is_err());
+    }
+
+    /// The same of matrices whose terms have factors.
+    #[test]
+    fn matrices_are_read_once() {
+        let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("validation/rotating-matrices");
+        let folder = tempfile::tempdir().unwrap();
+        let copied = crate::case::read_case(&from.join("case.toml")).unwrap();
+        let path = |name: &str| folder.path().join(name);
+        let matrix = |name: &String| name.ends_with(".mtx");
+        let files: Vec<String> = copied.files().into_iter().filter(matrix).collect();
+        for name in &files {
+            std::fs::copy(from.join(name), path(name)).unwrap();
+        }
+        let case = Case { folder: folder.path().into(), ..copied };
+        let prepared = Prepared::new(&case).unwrap();
+        let whole = Whole::new(&prepared, vec!["matrices.scalar.omega".into()], None);
+        let at = [0.9 * case.parameter("matrices.scalar.omega").unwrap().value];
+        let there = whole.eigenvalues(&at).unwrap();
+        assert!(files.len() > 3 && !there.is_empty());
+        files.iter().for_each(|name| std::fs::remove_file(path(name)).unwrap());
+        assert_eq!(whole.eigenvalues(&at).unwrap(), there);
         assert!(Prepared::new(&case).is_err());
     }
 }
