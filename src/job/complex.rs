@@ -216,6 +216,8 @@ pub fn whole_modes(
 }
 
 #[cfg(test)]
+mod oscillators;
+#[cfg(test)]
 mod tests {
     use crate::bounds::{Origin::*, within};
     use crate::case::Case;
@@ -225,6 +227,17 @@ mod tests {
     use crate::linalg::random::Random;
     use crate::results::ComplexResult;
     use crate::sweep::SweepProblem;
+
+    /// Writes a symmetric matrix.
+    pub(super) fn write_matrix(path: &std::path::Path, a: &faer::Mat<f64>) {
+        let n = a.nrows();
+        let entries: Vec<String> = (0..n)
+            .flat_map(|j| (j..n).map(move |i| (i, j)))
+            .map(|(i, j)| format!("{} {} {:e}", i + 1, j + 1, a[(i, j)]))
+            .collect();
+        let head = format!("%%MatrixMarket matrix coordinate real symmetric\n{n} {n} {}\n", entries.len());
+        std::fs::write(path, head + &entries.join("\n") + "\n").unwrap();
+    }
 
     fn eigenvalues(case: &Case) -> Vec<c64> {
         let prepared = Prepared::new(case).unwrap();
@@ -326,15 +339,7 @@ mod tests {
             };
             let (k, c) = (symmetric([1.0, 9.0], 0.2), symmetric([-8.0, 2.0], 0.5));
             let top = TOPS[trial % TOPS.len()];
-            let write = |name: &str, a: &faer::Mat<f64>| {
-                let entries: Vec<String> = (0..n)
-                    .flat_map(|j| (j..n).map(move |i| (i, j)))
-                    .map(|(i, j)| format!("{} {} {:e}", i + 1, j + 1, a[(i, j)]))
-                    .collect();
-                let head =
-                    format!("%%MatrixMarket matrix coordinate real symmetric\n{n} {n} {}\n", entries.len());
-                std::fs::write(folder.path().join(name), head + &entries.join("\n") + "\n").unwrap();
-            };
+            let write = |name: &str, a: &faer::Mat<f64>| write_matrix(&folder.path().join(name), a);
             write("m.mtx", &faer::Mat::identity(n, n));
             write("k.mtx", &k);
             write("c.mtx", &c);

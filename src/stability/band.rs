@@ -1,6 +1,6 @@
 //! Selection of complex modes.
 
-use super::SLOWEST_GROWTH;
+use super::{ComplexMode, SLOWEST_GROWTH};
 use crate::linalg::c64;
 
 /// Selection of complex modes, and options of their output.
@@ -24,10 +24,15 @@ impl From<[f64; 2]> for Band {
 /// Below this part of the band's top |λ| may be rounding of zero, of which neither λ nor its conjugate is the one to give.
 const NEXT_TO_ZERO: f64 = 1e-6;
 
+/// Whether λ is real but for rounding.
+pub(super) fn is_real(z: c64) -> bool {
+    z.im.abs() <= 1e-9 * z.norm()
+}
+
 /// Whether λ is one to give: one of each conjugate pair, its frequency in the band, or one that diverges, whatever the band. Next to
 /// zero both of a pair are, until it is known whether they are zero.
 pub(super) fn in_band(z: c64, band: [f64; 2]) -> bool {
-    let real = z.im.abs() <= 1e-9 * z.norm() || z.norm() <= NEXT_TO_ZERO * band[1];
+    let real = is_real(z) || z.norm() <= NEXT_TO_ZERO * band[1];
     let oscillates = !real && z.im > 0.0;
     (oscillates && z.im >= band[0] && z.im <= band[1])
         || (real && band[0] == 0.0 && z.norm() <= band[1])
@@ -38,4 +43,37 @@ pub(super) fn in_band(z: c64, band: [f64; 2]) -> bool {
 /// loss factors give a small imaginary part.
 pub(super) fn diverges(z: c64, band: [f64; 2]) -> bool {
     z.re > SLOWEST_GROWTH * band[1] && z.im >= -1e-9 * z.norm() && z.im <= 0.1 * z.re
+}
+
+/// A pair σ ± iω is two real eigenvalues as far as is known where the error p/(2mω) of λ, of a change p of Q, is that of a change
+/// mω² which makes them one: ω up to twice the error, which itself is estimated within a factor of two.
+const MAY_BE_ONE: f64 = 4.0;
+
+/// ω/|λ| of a real eigenvalue by rounding.
+const NOISE: f64 = 1e-12;
+
+/// Pairs that may be two equal real eigenvalues, of critical damping or of two modes that diverge alike, become that; others that are
+/// real but for rounding lose their ω.
+pub(super) fn part_real_pairs(modes: &mut Vec<ComplexMode>) {
+    let mut further = Vec::new();
+    let slow = |mode: &&mut ComplexMode| {
+        let z = mode.eigenvalue;
+        z.im.abs() <= (MAY_BE_ONE * mode.uncertainty).max(NOISE * z.norm())
+    };
+    for mode in modes.iter_mut().filter(slow) {
+        let alone = is_real(mode.eigenvalue);
+        mode.eigenvalue.im = 0.0;
+        if !alone {
+            let mut other = mode.clone();
+            other.right.iter_mut().chain(&mut other.left).for_each(|z| *z = z.conj());
+            further.push(other);
+        }
+    }
+    if !further.is_empty() {
+        modes.extend(further);
+        modes.sort_by(|a, b| {
+            let [a, b] = [a, b].map(|mode| mode.eigenvalue);
+            a.im.total_cmp(&b.im).then(a.re.total_cmp(&b.re))
+        });
+    }
 }

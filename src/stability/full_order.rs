@@ -44,10 +44,13 @@ const GROUP: usize = 16;
 const SAME: f64 = 1e-7;
 /// Relative residual of the eigenvalues of the second method.
 const TOLERANCE: f64 = 1e-12;
+/// ω/|λ| below which a pair is two equal real eigenvalues to an iteration that ends at √[`TOLERANCE`] of what is double, and two of
+/// these are a pair.
+const NEXT_TO_REAL: f64 = 1e-3;
 /// Uncertainties of an eigenvalue within which another method may find it.
 const WITHIN: f64 = 10.0;
 
-/// Looks for the oscillating modes of `found` (ω > 0, in `band_hz`) again, by two-level Arnoldi on the full order at shifts
+/// Looks for the oscillating modes of `found` (ω > 1e-3 |λ|, in `band_hz`) again, by two-level Arnoldi on the full order at shifts
 /// along the band, each near a group of modes and with a margin for modes that `found` does not have.
 ///
 /// Within the distance of the farthest eigenvalue that a shift gave, the method finds all that its Krylov space holds; it
@@ -67,12 +70,13 @@ pub fn confirm(
 ) -> Result<Confirmation> {
     let asked = band.into();
     let operator = Operator::new(system, steady)?;
-    let modes: Vec<&ComplexMode> = found.modes.iter().filter(|mode| mode.eigenvalue.im > 0.0).collect();
+    let oscillates = |z: c64| z.im > NEXT_TO_REAL * z.norm();
+    let modes: Vec<&ComplexMode> = found.modes.iter().filter(|mode| oscillates(mode.eigenvalue)).collect();
     let band = asked.hz.map(|f| TAU * f);
-    // Beside a zero that is double the iteration ends at the root of its tolerance.
-    let zeros = found.modes.iter().filter(|mode| mode.is_zero());
-    let zero =
-        zeros.map(|mode| WITHIN * mode.uncertainty.max(TOLERANCE.sqrt() * band[1])).fold(0.0, f64::max);
+    // Beside a zero that may be double the iteration ends at the root of its tolerance.
+    let least = WITHIN * TOLERANCE.sqrt() * band[1];
+    let zeros = found.modes.iter().filter(|mode| mode.is_zero() || mode.eigenvalue.norm() <= least);
+    let zero = zeros.map(|mode| least.max(WITHIN * mode.uncertainty)).fold(0.0, f64::max);
     // Of those nearest to a frequency none is missed that is farther than the last.
     let centre = asked.nearest.map(|(hz, _)| c64::new(0.0, TAU * hz));
     let reach = centre.map_or(f64::INFINITY, |centre| {
@@ -102,7 +106,7 @@ pub fn confirm(
             }
             count *= 2;
         };
-        for value in values.iter().filter(|z| z.im > 1e-9 * z.norm()) {
+        for value in values.iter().filter(|value| oscillates(**value)) {
             let alike: Vec<usize> = (0..modes.len()).filter(|j| same(modes[*j], *value)).collect();
             if alike.is_empty() && to_find(*value) {
                 confirmation.missed.push(*value);

@@ -6,7 +6,7 @@
 //! left vectors come from Krylov spaces of their own, so that their eigenvalues confirm each other, and the two-sided
 //! Rayleigh quotient λ − ψᴴQ(λ)φ / ψᴴQ′(λ)φ has an error quadratic in those of the vectors.
 
-use super::band::{Band, diverges, in_band};
+use super::band::{Band, diverges, in_band, part_real_pairs};
 use super::budget::growth_budget;
 use super::certificate::Definiteness;
 use super::post_processing::shares;
@@ -103,6 +103,7 @@ pub(super) fn general_modes(
         let key = |m: &ComplexMode| (m.eigenvalue.im, m.eigenvalue.re);
         key(a).partial_cmp(&key(b)).expect("eigenvalues are numbers")
     });
+    part_real_pairs(&mut modes);
     if asked.nearest.is_none() {
         warnings.push(format!(
             "{} complex eigenvalues of the band by two-level Arnoldi at {} shifts ({} solutions): every one with |σ| below {:.3e} 1/s that the Krylov spaces hold",

@@ -1,6 +1,7 @@
 //! The projected quadratic eigenproblem: small and dense.
 
 use super::ROUNDING;
+use super::band::is_real;
 use super::basis::Basis;
 use crate::dynamics::Operator;
 use crate::error::{Error, Result};
@@ -411,8 +412,9 @@ impl Companion {
 }
 
 /// One Newton step for all pairs, which takes back what the linearisation lost: y − Q(λ)⁻¹Q(λ)y with the inverse that the
-/// companion matrix gives but for the pole at λ, and λ − zᴴQ(λ)y / zᴴQ′(λ)y. It is kept where it brings both residuals down, and λ is
-/// `wanted` still: of a double real eigenvalue, zᴴQ′(λ)y ≈ 0, it may lead to the conjugate, which nobody looks for.
+/// companion matrix gives but for the pole at λ, and λ − zᴴQ(λ)y / zᴴQ′(λ)y. It is kept where it brings both residuals down, λ is
+/// `wanted` still, and real where it was: of a double real eigenvalue, zᴴQ′(λ)y ≈ 0, it may lead to the conjugate, which nobody looks
+/// for, or take the one of a pair that is looked for to the real axis, where it would stand for itself alone.
 fn polished(
     quadratic: &Quadratic,
     companion: &Companion,
@@ -431,7 +433,8 @@ fn polished(
     let after = quadratic.values(&next);
     let slopes = [&pairs, &next].map(|pairs| quadratic.slopes(pairs));
     let pair = |j: usize| {
-        let better = usize::from(size(after.each_ref(), j) < before[j] && wanted(next.lambda[j]));
+        let same_kind = wanted(next.lambda[j]) && is_real(next.lambda[j]) == is_real(pairs.lambda[j]);
+        let better = usize::from(same_kind && size(after.each_ref(), j) < before[j]);
         let (vectors, slopes) = ([&pairs, &next][better], &slopes[better]);
         let list = |x: &Mat<c64>| x.col(j).iter().copied().collect();
         SmallPair {

@@ -109,3 +109,17 @@ fn open_contacts_have_no_preload_and_say_so() {
         );
     }
 }
+
+/// Modes of parts by themselves, or held in another way, are not those of the stressed structure.
+#[test]
+fn modes_of_other_supports_have_no_preload_and_say_so() {
+    let sets = ["count = 1", "count = 7\nfree = true", "count = 1\nclamp = [\"plate_edge_y_min\"]"];
+    for (set, without) in sets.iter().zip([false, true, true]) {
+        let folder = folder_with(&column(-100.0, "").replace("count = 1", set));
+        let output = stridor(folder.path(), &["check", "case.toml"]);
+        let words = [text(&output.stdout), text(&output.stderr)].concat();
+        let words = words.split_whitespace().collect::<Vec<_>>().join(" ");
+        said(&output, 0);
+        assert_eq!(words.contains("`prestress` does not act on it"), without, "{set}: {words}");
+    }
+}

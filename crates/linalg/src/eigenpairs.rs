@@ -358,13 +358,24 @@ impl<'a> Pencil<'a> {
         (backward_error * norm_1(self.k) / (reach * norm_1(self.m))).clamp(1e-12, residual)
     }
 
-    /// The median of K_ii / M_ii: how fast single degrees of freedom would vibrate, far above the lowest eigenvalues.
-    fn local_scale(&self) -> f64 {
+    /// |K_ii| / M_ii, ascending, without zeros: how fast single degrees of freedom would vibrate.
+    fn local_scales(&self) -> Vec<f64> {
         let (k, m) = (diagonal(self.k), diagonal(self.m));
         let mut ratios: Vec<f64> =
-            k.iter().zip(m).filter(|(k, m)| **k > 0.0 && *m > 0.0).map(|(k, m)| k / m).collect();
+            k.iter().zip(m).filter(|(k, m)| **k != 0.0 && *m > 0.0).map(|(k, m)| k.abs() / m).collect();
         ratios.sort_by(f64::total_cmp);
+        ratios
+    }
+
+    /// The median of [`Pencil::local_scales`], far above the lowest eigenvalues.
+    fn local_scale(&self) -> f64 {
+        let ratios = self.local_scales();
         ratios.get(ratios.len() / 2).copied().unwrap_or(1.0)
+    }
+
+    /// The largest of [`Pencil::local_scales`].
+    fn largest_scale(&self) -> f64 {
+        self.local_scales().last().copied().unwrap_or(1.0)
     }
 
     /// Eigenvalues up to this size are rigid-body motions, zero but for rounding.

@@ -54,7 +54,13 @@ impl<'a> Planned<'a> for Sets<'a> {
         let open = whole.filter_map(|(name, _)| {
             without_prestress(self.prepared.case, &format!("modes.{name}"), "closed")
         });
-        self.tests.warnings.iter().cloned().chain(open).collect()
+        let others = self.sets.iter().filter(|(_, set)| !of_the_whole(self.prepared, set));
+        let unstressed =
+            others.filter(|(_, set)| self.prepared.case.prestress && set.contact == ContactState::Open);
+        let unstressed = unstressed.map(|(name, _)| {
+            format!("modes.{name} is of parts by themselves, or with other supports: `prestress` does not act on it")
+        });
+        self.tests.warnings.iter().cloned().chain(open).chain(unstressed).collect()
     }
 
     fn run(self: Box<Self>, run: &mut Run<'a, '_>) -> Result<()> {

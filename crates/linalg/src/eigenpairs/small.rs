@@ -11,10 +11,21 @@ impl Pencil<'_> {
     /// All finite eigenpairs densely, of which the wanted ones are kept.
     pub(super) fn solve_densely(&self, wanted: Wanted) -> Result<Eigenpairs> {
         let all = match wanted {
-            Wanted::Below(bound) => self.dense_pairs(-0.01 * bound)?,
+            // Below a bound far above all eigenvalues rounding at the shift would be large beside K.
+            Wanted::Below(bound) => self.dense_pairs(-0.01 * bound.min(self.largest_scale()))?,
             Wanted::Count(count) => {
-                let first = self.dense_pairs(-1e-4 * self.local_scale())?;
-                let highest = first.values.get(count - 1).or(first.values.last()).copied().unwrap_or(0.0);
+                let near = self.dense_pairs(-1e-4 * self.local_scale());
+                let all = |found: &Found| found.values.len() >= count.min(self.k.ncols());
+                // Eigenvalues far above the shift look as if they had no mass.
+                let first = match near {
+                    Ok(near) if all(&near) => near,
+                    near => match (near, self.dense_pairs(-1e-4 * self.largest_scale())) {
+                        (Ok(near), Ok(far)) if near.values.len() >= far.values.len() => near,
+                        (Ok(near), Err(_)) => near,
+                        (_, far) => far?,
+                    },
+                };
+                let highest = first.values.iter().take(count).fold(0.0f64, |most, v| most.max(v.abs()));
                 if highest > self.rigid_below() { self.dense_pairs(-0.01 * highest)? } else { first }
             }
         };

@@ -1,5 +1,6 @@
 use super::super::dense::definite_pencil;
 use super::super::factor::{factorize, singular};
+use super::super::random::Random;
 use super::super::samples;
 use super::super::sparse::entry;
 use super::*;
@@ -255,4 +256,41 @@ fn other_shifts_are_tried_where_the_matrix_is_singular_and_not_where_memory_is_s
     assert!(count == 1 && refused.contains("memory"), "{count}: {refused}");
     // One that sits on an eigenvalue is passed over.
     assert_eq!(off_eigenvalues([1.0, 2.0, 3.0], |s| Ok((s > 1.5).then_some(s))).unwrap(), (2.0, 2.0));
+}
+
+/// Springs of one to six masses that span any number of digits, zero and negative ones among them, in mixed coordinates: all are found,
+/// those far above the others and those far below a bound, too.
+#[test]
+fn stiffnesses_of_any_span_have_all_their_eigenvalues() {
+    let mut random = Random::seeded(14);
+    for trial in 0..300 {
+        let n = 1 + random.below(6);
+        let span = [0.0, 8.0, 17.0][trial % 3];
+        let mut own: Vec<f64> = (0..n)
+            .map(|_| match random.below(8) {
+                0 => 0.0,
+                1 => -(10f64.powf(-random.between(0.0, span))),
+                _ => 10f64.powf(-random.between(0.0, span)),
+            })
+            .collect();
+        let unit = 10f64.powi(3 * random.below(5) as i32 - 6);
+        own.iter_mut().for_each(|k| *k *= unit);
+        let mix = Mat::from_fn(n, n, |i, j| 0.3 * random.next() + f64::from(i == j));
+        let of = |value: &dyn Fn(usize) -> f64| {
+            let diagonal = Mat::from_fn(n, n, |i, j| if i == j { value(i) } else { 0.0 });
+            let turned = mix.transpose() * diagonal * &mix;
+            samples::from_dense(Mat::from_fn(n, n, |i, j| turned[(i.max(j), i.min(j))]).as_ref())
+        };
+        let (k, m) = (of(&|i| own[i]), of(&|_| 1.0));
+        own.sort_by(f64::total_cmp);
+        let largest = own.iter().fold(0.0f64, |l, k| l.max(k.abs()));
+        for wanted in [Wanted::Count(n), Wanted::Below(3.0 * largest.max(unit))] {
+            let pairs =
+                lowest_eigenpairs(&k, &m, wanted, &()).unwrap_or_else(|e| panic!("{trial}: {e} {own:?}"));
+            assert_eq!(pairs.values.len(), n, "{trial} {wanted:?}: {own:?} {:?}", pairs.values);
+            for (value, exact) in pairs.values.iter().zip(&own) {
+                assert!(within((value - exact).abs(), 1e-11 * largest, RoundOff), "{trial}: {value} {exact}");
+            }
+        }
+    }
 }
