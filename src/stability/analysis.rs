@@ -199,9 +199,7 @@ fn solve_and_refine<'a>(
         ));
     }
     let mut modes: Vec<ComplexMode> = found.into_iter().filter_map(|found| found.mode).collect();
-    // Next to zero both of a pair were looked for.
-    modes.retain(|mode| mode.eigenvalue.im >= -1e-9 * mode.eigenvalue.norm());
-    part_real_pairs(&mut modes);
+    part_real_pairs(&mut modes, band[1]);
     // The basis is that of the band: eigenvalues far beyond it, real or heavily damped, need not be those of the full order.
     let (unconfirmed, kept): (Vec<_>, Vec<_>) =
         modes.into_iter().partition(|mode| mode.eigenvalue.norm() > band[1] && !mode.accurate());

@@ -49,26 +49,29 @@ pub(super) fn diverges(z: c64, band: [f64; 2]) -> bool {
 /// mω² which makes them one: ω up to twice the error, which itself is estimated within a factor of two.
 const MAY_BE_ONE: f64 = 4.0;
 
-/// ω/|λ| of a real eigenvalue by rounding.
-const NOISE: f64 = 1e-12;
+/// ω of a real eigenvalue by rounding, as a part of |λ| and of the band's top.
+const NOISE: [f64; 2] = [1e-12, 1e-14];
 
+/// Takes what was looked for twice, and what is rounding, from modes of a band up to `top` \[rad/s\].
+///
 /// Pairs that may be two equal real eigenvalues, of critical damping or of two modes that diverge alike, become that; others that are
-/// real but for rounding lose their ω.
-pub(super) fn part_real_pairs(modes: &mut Vec<ComplexMode>) {
+/// real but for rounding lose their ω. Next to zero both of a pair were looked for: the one with ω < 0 goes.
+pub(super) fn part_real_pairs(modes: &mut Vec<ComplexMode>, top: f64) {
     let mut further = Vec::new();
-    let slow = |mode: &&mut ComplexMode| {
+    for mode in modes.iter_mut() {
         let z = mode.eigenvalue;
-        z.im.abs() <= (MAY_BE_ONE * mode.uncertainty).max(NOISE * z.norm())
-    };
-    for mode in modes.iter_mut().filter(slow) {
-        let alone = is_real(mode.eigenvalue);
+        let noise = (NOISE[0] * z.norm()).max(NOISE[1] * top);
+        if z.im.abs() > (MAY_BE_ONE * mode.uncertainty).max(noise) {
+            continue;
+        }
         mode.eigenvalue.im = 0.0;
-        if !alone {
+        if !is_real(z) && z.norm() > NEXT_TO_ZERO * top {
             let mut other = mode.clone();
             other.right.iter_mut().chain(&mut other.left).for_each(|z| *z = z.conj());
             further.push(other);
         }
     }
+    modes.retain(|mode| mode.eigenvalue.im >= -1e-9 * mode.eigenvalue.norm());
     if !further.is_empty() {
         modes.extend(further);
         modes.sort_by(|a, b| {

@@ -41,7 +41,7 @@ impl Confirmation {
 /// Modes sought at one shift.
 const GROUP: usize = 16;
 /// Two eigenvalues are the same when they differ by less than this part of |λ|, times the condition number.
-const SAME: f64 = 1e-7;
+const SAME: f64 = 1e-6;
 /// Relative residual of the eigenvalues of the second method.
 const TOLERANCE: f64 = 1e-12;
 /// ω/|λ| below which a pair is two equal real eigenvalues to an iteration that ends at √[`TOLERANCE`] of what is double, and two of

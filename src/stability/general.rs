@@ -103,7 +103,7 @@ pub(super) fn general_modes(
         let key = |m: &ComplexMode| (m.eigenvalue.im, m.eigenvalue.re);
         key(a).partial_cmp(&key(b)).expect("eigenvalues are numbers")
     });
-    part_real_pairs(&mut modes);
+    part_real_pairs(&mut modes, band[1]);
     if asked.nearest.is_none() {
         warnings.push(format!(
             "{} complex eigenvalues of the band by two-level Arnoldi at {} shifts ({} solutions): every one with |σ| below {:.3e} 1/s that the Krylov spaces hold",

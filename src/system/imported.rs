@@ -212,7 +212,33 @@ fn check_mass(mass: Given<'_>, exact: &SparseMatrix, faults: &mut Faults) {
         let found =
             if negative.len() > 1 { format!("{found} and {} more", negative.len() - 1) } else { found };
         faults.push(Fault::new(mass.place, found, "masses of zero or more"));
+        return;
     }
+    faults.0.extend(
+        indefinite(exact)
+            .map(|found| Fault::new(mass.place, found, "a mass matrix that is positive semidefinite")),
+    );
+}
+
+/// How many times m_ii m_jj the square of m_ij may be where a program wrote three digits.
+const WRITTEN_WITH_FEW_DIGITS: f64 = 1.01;
+
+/// The first pair of rows that alone have a negative kinetic energy: m_ij² > m_ii m_jj.
+fn indefinite(mass: &SparseMatrix) -> Option<String> {
+    let own = diagonal(mass);
+    let beyond = |i: usize, j: usize, m: f64| {
+        i > j && own[i] * own[j] > 0.0 && m * m > WRITTEN_WITH_FEW_DIGITS * own[i] * own[j]
+    };
+    (0..mass.ncols()).find_map(|j| {
+        let mut entries = mass.row_idx_of_col(j).zip(mass.val_of_col(j));
+        let (i, m) = entries.find(|(i, m)| beyond(*i, j, **m))?;
+        let [a, b] = [own[j], own[i]].map(|m| format!("{m:e}"));
+        Some(format!(
+            "{m:e} in row {} and column {}, more than the root of {a} × {b} on the diagonal",
+            i + 1,
+            j + 1
+        ))
+    })
 }
 
 /// The fault of a mass matrix that is not symmetric.

@@ -80,6 +80,8 @@ const BASIS: Aim = Aim { backward_error: 1e-11, residual: 1e-6 };
 
 /// Problems up to this size are solved densely.
 const DENSE: usize = 300;
+/// Up to this size those are that an iteration does not find, as where most eigenvalues are equal, or none is positive.
+const STILL_DENSE: usize = 1000;
 /// Where in the range the shift lies, with two places to evade to: the ends are about equally far in blocks of
 /// Lanczos, as modes of plates lie denser towards the lower one.
 const INSIDE: [f64; 3] = [0.4, 0.38, 0.42];
@@ -141,13 +143,14 @@ pub fn lowest_eigenpairs_by(
     }
     let pencil = Pencil::new(k, m, engine)?;
     observer.begin("eigenvalues", None);
-    let result = if n <= DENSE {
-        pencil.solve_densely(wanted)
-    } else {
-        match wanted {
-            Wanted::Below(bound) => pencil.below(bound, observer),
-            Wanted::Count(count) => pencil.count(count.min(n), observer),
-        }
+    let iterated = || match wanted {
+        Wanted::Below(bound) => pencil.below(bound, observer),
+        Wanted::Count(count) => pencil.count(count.min(n), observer),
+    };
+    let result = match n {
+        0..=DENSE => pencil.solve_densely(wanted),
+        _ => iterated()
+            .or_else(|error| if n <= STILL_DENSE { pencil.solve_densely(wanted) } else { Err(error) }),
     };
     observer.end();
     result

@@ -29,6 +29,8 @@ fn oscillator(kind: usize, random: &mut Random) -> [f64; 2] {
         5 => return [[0.0, random.between(-1.0, 1.0)][random.below(2)], 0.0],
         // Diverges.
         6 => return [[0.0, random.between(-0.5, 1.0)][random.below(2)], -omega * omega],
+        // Creeps away, far slower than the others.
+        7 => return [random.between(0.1, 1.0), -(10f64.powf(random.between(-9.0, -4.0)))],
         // At the onset of divergence.
         _ => return [random.between(0.1, 1.0), near],
     };
@@ -61,7 +63,7 @@ fn member(random: &mut Random) -> Member {
     let mut own: Vec<[f64; 2]> = Vec::new();
     let alike = random.below(3);
     for i in 0..n {
-        let kind = random.below(8);
+        let kind = random.below(9);
         let next = oscillator(kind, random);
         // All alike, or now and then.
         let again = i > 0 && (alike == 0 || alike == 1 && random.below(2) == 0);
@@ -144,6 +146,16 @@ impl Member {
                     "{z} is there {there} times, not {least}: {found:?} {:?}",
                     results.warnings
                 ));
+            }
+        }
+        // Slow ones that stand alone are there once, each.
+        for z in
+            exact.iter().filter(|z| z.im == 0.0 && z.re > 1e-10 * self.unit && z.norm() < near && low == 0.0)
+        {
+            let own =
+                |others: &[c64]| others.iter().filter(|other| (*other - z).norm() < 1e-2 * z.norm()).count();
+            if own(&found) != own(&exact) {
+                return Some(format!("{z} is there {} times, not {}: {found:?}", own(&found), own(&exact)));
             }
         }
         for mode in modes {

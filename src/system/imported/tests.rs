@@ -233,3 +233,21 @@ fn rows_of_multipliers_are_refused_wherever_they_stand() {
         assert!(text.contains(&format!("row {}", first + 1)) && text.contains("Lagrange"), "{seed}: {text}");
     }
 }
+
+/// [a m; m b] has a negative eigenvalue beyond m² = ab; at m² = ab, in a few digits, and without a diagonal it is taken.
+#[test]
+fn a_mass_of_negative_kinetic_energy_is_refused() {
+    let mut random = Random::seeded(8);
+    for (trial, part) in [0.3, 1.0, 1.003, 1.02, 3.0, -0.9, -1.1].into_iter().enumerate() {
+        let unit = 10f64.powf(random.between(-9.0, 3.0));
+        let [a, b] = [0.5 * unit, 1e4 * random.between(0.5, 2.0) * unit];
+        let m = part * (a * b).sqrt();
+        let entries = [entry(0, 0, a), entry(2, 2, b), entry(0, 2, m), entry(2, 0, m), entry(1, 1, unit)];
+        let mass = SparseMatrix::try_new_from_triplets(3, 3, &entries).unwrap();
+        let mass = MarketMatrix { re: mass, im: None };
+        let stiffness = real(samples::identity(3));
+        let found = split(Given { place: "m.mtx", matrix: &mass }, None, given(&stiffness), &[]);
+        let words = found.err().map(|error| error.to_string()).unwrap_or_default();
+        assert_eq!(words.contains("row 3 and column 1"), part.abs() > 1.01, "{trial}: {words}");
+    }
+}

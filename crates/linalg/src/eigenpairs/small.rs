@@ -7,6 +7,9 @@ use super::{CLUSTER, Eigenpairs, Found, Pencil, SturmCount, Wanted, gap, orthono
 use faer::{Mat, MatRef};
 use stridor_base::error::Result;
 
+/// How many times farther away a shift is tried where one is on rounding.
+const FARTHER: [f64; 4] = [1e3, 1e6, 1e9, 1e12];
+
 impl Pencil<'_> {
     /// All finite eigenpairs densely, of which the wanted ones are kept.
     pub(super) fn solve_densely(&self, wanted: Wanted) -> Result<Eigenpairs> {
@@ -26,7 +29,11 @@ impl Pencil<'_> {
                     },
                 };
                 let highest = first.values.iter().take(count).fold(0.0f64, |most, v| most.max(v.abs()));
-                if highest > self.rigid_below() { self.dense_pairs(-0.01 * highest)? } else { first }
+                let better = (highest > self.rigid_below()).then(|| self.dense_pairs(-0.01 * highest));
+                match better {
+                    Some(Ok(better)) if better.values.len() >= first.values.len() => better,
+                    _ => first,
+                }
             }
         };
         let Found { values, vectors, shift, factor } = all;
@@ -56,9 +63,17 @@ impl Pencil<'_> {
         self.certify(found, SturmCount { bound, shifts, counted })
     }
 
+    /// [`Pencil::dense_pairs_at`] `shift`, or, where K − σM is singular to the rounding of a K that is far stiffer elsewhere, at one
+    /// farther away.
+    fn dense_pairs(&self, shift: f64) -> Result<Found> {
+        FARTHER.iter().fold(self.dense_pairs_at(shift), |found, factor| {
+            found.or_else(|error| self.dense_pairs_at(factor * shift).map_err(|_| error))
+        })
+    }
+
     /// All finite eigenpairs by M y = ν (K − σM) y with σ below them all, where K − σM is positive definite; σ is the
     /// given one or lower. A distance of a hundredth of the highest wanted θ serves both ends of the range.
-    fn dense_pairs(&self, shift: f64) -> Result<Found> {
+    fn dense_pairs_at(&self, shift: f64) -> Result<Found> {
         let n = self.k.ncols();
         let near = |shift: f64| self.factorize_near([1.0, 1.1, 1.2].map(|part| part * shift));
         let (mut shift, mut factor) = near(shift)?;

@@ -4,6 +4,7 @@ use super::super::random::Random;
 use super::super::samples;
 use super::super::sparse::entry;
 use super::*;
+use std::f64::consts::PI;
 use stridor_base::bounds::{Origin::*, within};
 
 fn check(m: &SparseMatrix, pairs: &Eigenpairs) {
@@ -292,5 +293,41 @@ fn stiffnesses_of_any_span_have_all_their_eigenvalues() {
                 assert!(within((value - exact).abs(), 1e-11 * largest, RoundOff), "{trial}: {value} {exact}");
             }
         }
+    }
+}
+
+/// Matrices of a few hundred rows in which an iteration finds no gap: one eigenvalue for all, or all below zero.
+#[test]
+fn equal_and_negative_eigenvalues_of_larger_matrices_are_found() {
+    let n = 320;
+    let (chain, m) = samples::free_chain(n);
+    let scaled = |factor: f64, k: &SparseMatrix| add_scaled(&[(factor, k)]);
+    for (k, lowest, count) in [
+        (scaled(1e4, &samples::identity(n)), 1e4, 2),
+        (scaled(-3.0, &samples::identity(n)), -3.0, 5),
+        (scaled(-1.0, &chain), -4.0 * (PI * (n - 1) as f64 / (2 * n) as f64).sin().powi(2), 20),
+        (scaled(0.0, &chain), 0.0, 4),
+    ] {
+        let pairs = lowest_eigenpairs(&k, &m, Wanted::Count(count), &()).unwrap();
+        assert!(pairs.values.len() >= count && pairs.sturm.counted == [pairs.values.len(); 2]);
+        let error = (pairs.values[0] - lowest).abs();
+        assert!(within(error, 1e-11 * lowest.abs().max(1.0), RoundOff), "{} {lowest}", pairs.values[0]);
+    }
+}
+
+/// A mass on a spring without mass, whose stiffness hides those of the others in rounding.
+#[test]
+fn soft_springs_beside_stiff_ones_have_their_eigenvalues() {
+    let entries = [entry(0, 0, 3.3e8), entry(0, 1, -3.3e8), entry(1, 0, -3.3e8), entry(1, 1, 3.3e8)];
+    let others = [entry(2, 2, 2.4e-3), entry(3, 3, 2.5e3)];
+    let k = SparseMatrix::try_new_from_triplets(4, 4, &[&entries[..], &others].concat()).unwrap();
+    let masses = [entry(1, 1, 8.0), entry(2, 2, 0.25), entry(3, 3, 0.5)];
+    let m = SparseMatrix::try_new_from_triplets(4, 4, &masses).unwrap();
+    for wanted in [Wanted::Count(3), Wanted::Below(1e4)] {
+        let values = lowest_eigenpairs(&k, &m, wanted, &()).unwrap().values;
+        for (value, exact) in values.iter().zip([0.0, 9.6e-3, 5e3]) {
+            assert!(within((value - exact).abs(), 1e-6, RoundOff), "{values:?}");
+        }
+        assert_eq!(values.len(), 3);
     }
 }
