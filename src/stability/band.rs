@@ -1,6 +1,6 @@
 //! Selection of complex modes.
 
-use super::{ComplexMode, SLOWEST_GROWTH};
+use super::{ComplexMode, SLOWEST_GROWTH, is_real};
 use crate::linalg::c64;
 
 /// Selection of complex modes, and options of their output.
@@ -23,11 +23,6 @@ impl From<[f64; 2]> for Band {
 
 /// Below this part of the band's top |λ| may be rounding of zero, of which neither λ nor its conjugate is the one to give.
 const NEXT_TO_ZERO: f64 = 1e-6;
-
-/// Whether λ is real but for rounding.
-pub(super) fn is_real(z: c64) -> bool {
-    z.im.abs() <= 1e-9 * z.norm()
-}
 
 /// Whether λ is one to give: one of each conjugate pair, its frequency in the band, or one that diverges, whatever the band. Next to
 /// zero both of a pair are, until it is known whether they are zero.

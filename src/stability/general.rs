@@ -11,7 +11,7 @@ use super::budget::growth_budget;
 use super::certificate::Definiteness;
 use super::post_processing::shares;
 use super::refinement::TOGETHER;
-use super::{CONTACT_ROUNDING, ComplexMode, ComplexModes, ROUNDING, accuracy_warnings};
+use super::{CONTACT_ROUNDING, ComplexMode, ComplexModes, ROUNDING, accuracy_warnings, is_real};
 use crate::dynamics::{Adjoint, Block, Operator, Shifted, Side};
 use crate::error::{Error, Result};
 use crate::linalg::c64;
@@ -210,7 +210,7 @@ impl<'a> ShiftSearch<'a> {
                     let (first, last) = (a == low, b == high);
                     let edge = SAME * high;
                     let own = |z: c64| {
-                        let real = z.im.abs() <= 1e-9 * z.norm();
+                        let real = is_real(z);
                         let below = first || z.im >= a - edge;
                         in_band(z, band) && if real { first } else { below && (last || z.im <= b + edge) }
                     };

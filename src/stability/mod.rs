@@ -245,6 +245,11 @@ const CONTACT_ROUNDING: f64 = 4.0 * ROUNDING;
 /// λ is zero but for rounding up to |λ|² of this many times what rounding makes of it.
 const NEAR_ZERO: f64 = 100.0;
 
+/// Whether λ is real but for rounding.
+pub(crate) fn is_real(lambda: c64) -> bool {
+    lambda.im.abs() <= 1e-9 * lambda.norm()
+}
+
 /// Whether a mode grows by more than round-off.
 pub fn unstable(lambda: c64) -> bool {
     lambda.re > ROUND_OFF * lambda.norm()

@@ -1,8 +1,7 @@
 //! The projected quadratic eigenproblem: small and dense.
 
-use super::ROUNDING;
-use super::band::is_real;
 use super::basis::Basis;
+use super::{ROUNDING, is_real};
 use crate::dynamics::Operator;
 use crate::error::{Error, Result};
 use crate::linalg::c64;

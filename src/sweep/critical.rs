@@ -9,6 +9,7 @@ use crate::error::{Error, Result};
 use crate::linalg::c64;
 use crate::linalg::dense::mac;
 use crate::progress::Observer;
+use crate::stability::is_real;
 
 /// A value of the parameter at which a branch becomes unstable or stable.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -172,14 +173,9 @@ fn growing(growth: &[Option<(c64, f64)>]) -> Vec<bool> {
     grows
 }
 
-/// Whether a mode does not oscillate.
-fn diverges(z: c64) -> bool {
-    z.im.abs() <= 1e-9 * z.norm()
-}
-
 /// Whether λ of one sample, given with its rounding, grows without oscillation, as more modes do than at the sample `without` it.
 fn begins_to_diverge((z, rounding): (c64, f64), without: &Sample, with: &Sample) -> bool {
-    let grows = |z: c64, rounding: f64| unstable(z) && z.re > rounding && diverges(z);
+    let grows = |z: c64, rounding: f64| unstable(z) && z.re > rounding && is_real(z);
     let count = |Sample { modes, .. }: &Sample| {
         let all = modes.eigenvalues.iter().enumerate();
         all.filter(|(k, z)| grows(**z, modes.rounding(*k))).count()
@@ -230,9 +226,9 @@ fn locate(
     // What grows is known from the growing end: the mode may not be there at the other one.
     let grown = followed.known.iter().find(|end| end.value == y).unwrap_or(above);
     let at = followed.known.iter().min_by(|a, b| (a.value - value).abs().total_cmp(&(b.value - value).abs()));
-    let lambda = if diverges(grown.lambda) { grown.lambda } else { at.unwrap_or(grown).lambda };
+    let lambda = if is_real(grown.lambda) { grown.lambda } else { at.unwrap_or(grown).lambda };
     let kind = match () {
-        () if diverges(grown.lambda) => CriticalKind::Divergence,
+        () if is_real(grown.lambda) => CriticalKind::Divergence,
         () if gap < 2e-3 * lambda.norm() && merges(lambda, grown.rounding) => CriticalKind::Merging,
         () => CriticalKind::Growth,
     };

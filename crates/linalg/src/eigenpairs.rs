@@ -78,10 +78,6 @@ const RESULT: Aim = Aim { backward_error: 1e-14, residual: 1e-9 };
 /// the residual.
 const BASIS: Aim = Aim { backward_error: 1e-11, residual: 1e-6 };
 
-/// Problems up to this size are solved densely.
-const DENSE: usize = 300;
-/// Up to this size those are that an iteration does not find, as where most eigenvalues are equal, or none is positive.
-const STILL_DENSE: usize = 1000;
 /// Where in the range the shift lies, with two places to evade to: the ends are about equally far in blocks of
 /// Lanczos, as modes of plates lie denser towards the lower one.
 const INSIDE: [f64; 3] = [0.4, 0.38, 0.42];
@@ -143,15 +139,10 @@ pub fn lowest_eigenpairs_by(
     }
     let pencil = Pencil::new(k, m, engine)?;
     observer.begin("eigenvalues", None);
-    let iterated = || match wanted {
+    let result = pencil.solve(wanted, || match wanted {
         Wanted::Below(bound) => pencil.below(bound, observer),
         Wanted::Count(count) => pencil.count(count.min(n), observer),
-    };
-    let result = match n {
-        0..=DENSE => pencil.solve_densely(wanted),
-        _ => iterated()
-            .or_else(|error| if n <= STILL_DENSE { pencil.solve_densely(wanted) } else { Err(error) }),
-    };
+    });
     observer.end();
     result
 }
@@ -174,11 +165,9 @@ pub fn eigenpairs_below(
 ) -> Result<Eigenpairs> {
     check_bound(bound)?;
     let pencil = Pencil { k, m, symbolic: start.1.symbolic(), aim: BASIS };
-    if k.ncols() <= DENSE {
-        return pencil.solve_densely(Wanted::Below(bound));
-    }
     observer.begin("eigenvalues", None);
-    let result = pencil.below_from(start, bound * (1.0 + APART), observer);
+    let result =
+        pencil.solve(Wanted::Below(bound), || pencil.below_from(start, bound * (1.0 + APART), observer));
     observer.end();
     result
 }

@@ -50,17 +50,15 @@ impl<'a> Planned<'a> for Sets<'a> {
     }
 
     fn warnings(&self) -> Vec<String> {
-        let whole = self.sets.iter().filter(|(_, set)| of_the_whole(self.prepared, set));
-        let open = whole.filter_map(|(name, _)| {
-            without_prestress(self.prepared.case, &format!("modes.{name}"), "closed")
+        let case = self.prepared.case;
+        let unstressed = self.sets.iter().filter_map(|(name, set)| match of_the_whole(self.prepared, set) {
+            true => without_prestress(case, &format!("modes.{name}"), "closed"),
+            false if !case.prestress || set.contact == ContactState::Closed => None,
+            false => Some(format!(
+                "modes.{name} is of parts by themselves, or with other supports: `prestress` does not act on it"
+            )),
         });
-        let others = self.sets.iter().filter(|(_, set)| !of_the_whole(self.prepared, set));
-        let unstressed =
-            others.filter(|(_, set)| self.prepared.case.prestress && set.contact == ContactState::Open);
-        let unstressed = unstressed.map(|(name, _)| {
-            format!("modes.{name} is of parts by themselves, or with other supports: `prestress` does not act on it")
-        });
-        self.tests.warnings.iter().cloned().chain(open).chain(unstressed).collect()
+        self.tests.warnings.iter().cloned().chain(unstressed).collect()
     }
 
     fn run(self: Box<Self>, run: &mut Run<'a, '_>) -> Result<()> {

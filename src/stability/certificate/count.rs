@@ -1,7 +1,7 @@
 //! A count of eigenvalues beside those that were found.
 
 use super::region::CountedRegion;
-use crate::stability::{ComplexMode, ComplexModes};
+use crate::stability::{ComplexMode, ComplexModes, is_real};
 use std::f64::consts::TAU;
 
 /// ε relative to the band's top, 2π f: the slowest growth that is counted. At the band's top it is a damping ratio of
@@ -85,7 +85,7 @@ impl Certificate {
 /// The eigenvalues found inside: each once, or both of a pair when the region holds both.
 pub(super) fn found(modes: &ComplexModes, region: &CountedRegion) -> i64 {
     let inside = modes.modes.iter().map(|m| m.eigenvalue).filter(|z| region.contains(*z));
-    inside.map(|z| if region.symmetric() && z.im > 1e-9 * z.norm() { 2 } else { 1 }).sum()
+    inside.map(|z| if region.symmetric() && z.im > 0.0 && !is_real(z) { 2 } else { 1 }).sum()
 }
 
 /// Modes within half of ε, or within their own error, of the contour, and unstable ones slower than ε.

@@ -7,27 +7,41 @@ use super::{CLUSTER, Eigenpairs, Found, Pencil, SturmCount, Wanted, gap, orthono
 use faer::{Mat, MatRef};
 use stridor_base::error::Result;
 
+/// Problems up to this size are solved densely.
+const DENSE: usize = 300;
+/// Up to this size those are that an iteration does not find, as where most eigenvalues are equal, or none is positive.
+const STILL_DENSE: usize = 1000;
 /// How many times farther away a shift is tried where one is on rounding.
 const FARTHER: [f64; 4] = [1e3, 1e6, 1e9, 1e12];
 
 impl Pencil<'_> {
+    /// The wanted pairs: densely where there are few rows, or where there are not many and an iteration does not find them.
+    pub(super) fn solve(
+        &self,
+        wanted: Wanted,
+        iterated: impl FnOnce() -> Result<Eigenpairs>,
+    ) -> Result<Eigenpairs> {
+        match self.k.ncols() {
+            n if n <= DENSE => self.solve_densely(wanted),
+            n if n <= STILL_DENSE => iterated().or_else(|_| self.solve_densely(wanted)),
+            _ => iterated(),
+        }
+    }
+
     /// All finite eigenpairs densely, of which the wanted ones are kept.
-    pub(super) fn solve_densely(&self, wanted: Wanted) -> Result<Eigenpairs> {
+    fn solve_densely(&self, wanted: Wanted) -> Result<Eigenpairs> {
         let all = match wanted {
             // Below a bound far above all eigenvalues rounding at the shift would be large beside K.
             Wanted::Below(bound) => self.dense_pairs(-0.01 * bound.min(self.largest_scale()))?,
             Wanted::Count(count) => {
-                let near = self.dense_pairs(-1e-4 * self.local_scale());
-                let all = |found: &Found| found.values.len() >= count.min(self.k.ncols());
+                let mut first = self.dense_pairs(-1e-4 * self.local_scale())?;
                 // Eigenvalues far above the shift look as if they had no mass.
-                let first = match near {
-                    Ok(near) if all(&near) => near,
-                    near => match (near, self.dense_pairs(-1e-4 * self.largest_scale())) {
-                        (Ok(near), Ok(far)) if near.values.len() >= far.values.len() => near,
-                        (Ok(near), Err(_)) => near,
-                        (_, far) => far?,
-                    },
-                };
+                if first.values.len() < count.min(self.k.ncols())
+                    && let Ok(far) = self.dense_pairs(-1e-4 * self.largest_scale())
+                    && far.values.len() > first.values.len()
+                {
+                    first = far;
+                }
                 let highest = first.values.iter().take(count).fold(0.0f64, |most, v| most.max(v.abs()));
                 let better = (highest > self.rigid_below()).then(|| self.dense_pairs(-0.01 * highest));
                 match better {
