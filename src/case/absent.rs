@@ -11,9 +11,8 @@ const ABSENT: [(&[&str], &str); 11] = [
          them stiffer",
     ),
     (
-        &["rotation_speed", "rotational_speed", "angular_velocity", "omega", "rpm", "rotation", "spin"],
-        "Rotation is not modelled: the speed at a contact is its `sliding_velocity`; gyroscopic and centrifugal matrices of another \
-         program can be added in [matrices.term]",
+        &["rotation_speed", "rotational_speed", "angular_velocity", "omega", "rpm", "spin"],
+        "Parts turn by [rotation.NAME] with `parts` and `speed`; the speed at a contact is its `sliding_velocity`",
     ),
     (
         &["pressure"],

@@ -27,8 +27,10 @@ impl Consistent for Case {
 fn check_names(root: &mut Report, case: &Case) {
     check_materials(root, case);
     check_modes(root, case);
-    if case.cea.is_some() && case.contact.is_empty() && case.matrices.is_none() {
-        root.fault("cea", "no [contact] in the case", "a contact, without which nothing slides", "");
+    super::rotation::check(root, case);
+    if case.cea.is_some() && case.contact.is_empty() && case.rotation.is_empty() && case.matrices.is_none() {
+        let expected = "a contact or a [rotation], without which no mode is complex";
+        root.fault("cea", "no [contact] in the case", expected, "");
     }
     if case.sensitivity.is_some() && case.cea.is_none() {
         root.fault("sensitivity", "no [cea] in the case", "a [cea], whose eigenvalues are looked into", "");

@@ -2,7 +2,7 @@
 
 use super::varied::no_number;
 use super::{Case, Invalidates, Parameter};
-use crate::schema::units::{dimension_of, parse_quantity};
+use crate::schema::units::{dimension_of, parse_of_scalar};
 use crate::schema::{Report, declare, dotted, key};
 
 /// The most points of one sweep or map.
@@ -112,7 +112,7 @@ impl Axis<'_> {
             let mine = |k: usize| self.entry.is_none_or(|entry| entry == k);
             let wrong = given.iter().filter(|(k, _)| mine(*k));
             let wrong: Vec<String> =
-                wrong.filter_map(|(_, text)| parse_quantity(text, dimension).err()).collect();
+                wrong.filter_map(|(_, text)| parse_of_scalar(text, dimension).err()).collect();
             sound &= wrong.is_empty() && !report.unread(&key(name));
             for found in wrong {
                 report.fault(&key(name), found, dimension.name, "");

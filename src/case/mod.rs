@@ -19,6 +19,7 @@ mod mesh;
 mod model;
 mod names;
 mod parameter;
+mod rotation;
 mod sound;
 mod structure;
 mod test_file;
@@ -46,6 +47,7 @@ pub use model::{
 };
 pub use parameter::VariedCase;
 pub(crate) use parameter::path_matches;
+pub use rotation::Rotation;
 pub use sound::{AirChoice, Microphone, ON_AXIS, SoundAnalysis};
 pub use test_file::read_test;
 pub use transient::{
@@ -106,6 +108,8 @@ declare! {
         pub tie: BTreeMap<String, Tie> = key::named(),
         /// Supports by name.
         pub support: BTreeMap<String, Held> = key::named(),
+        /// Steady rotations of parts by name.
+        pub rotation: BTreeMap<String, Rotation> = key::named(),
         /// External forces by name.
         pub force: BTreeMap<String, Force> = key::named().invalidates(Invalidates::Equilibrium),
         /// Contact pairs by name.

@@ -20,7 +20,7 @@ impl Case {
     }
 
     /// The sections of the structure, and whether the case has them.
-    pub(super) fn structure(&self) -> [(&'static str, bool); 13] {
+    pub(super) fn structure(&self) -> [(&'static str, bool); 14] {
         [
             ("mesh", self.mesh.is_some()),
             ("point", !self.point.is_empty()),
@@ -34,6 +34,7 @@ impl Case {
             ("averaging", !self.averaging.is_empty()),
             ("tie", !self.tie.is_empty()),
             ("support", !self.support.is_empty()),
+            ("rotation", !self.rotation.is_empty()),
             ("force", !self.force.is_empty()),
         ]
     }
@@ -53,6 +54,7 @@ impl Case {
             averaging: BTreeMap::new(),
             tie: BTreeMap::new(),
             support: BTreeMap::new(),
+            rotation: BTreeMap::new(),
             force: BTreeMap::new(),
             ..self.clone()
         }
@@ -74,9 +76,9 @@ mod tests {
                     [mass.m]\non = \"tip\"\nmass = 1\n[spring.s]\non = \"tip\"\nstiffness = 1\ndirection = [1, 0, 0]\n\
                     [rigid.r]\nmaster = \"tip\"\nfollow = [\"a\"]\n[averaging.v]\npoint = \"tip\"\nof = [\"c\"]\n\
                     [tie.t]\non = \"a\"\nto = \"c\"\n[support.u]\non = \"b\"\n\
-                    [force.f]\non = \"tip\"\nforce = [1, 0, 0]\n";
+                    [rotation.o]\nparts = [\"c\"]\nspeed = 1\n[force.f]\non = \"tip\"\nforce = [1, 0, 0]\n";
         let case = Case::parse("case.toml", text, PathBuf::new()).unwrap();
         let there = |case: &Case| case.structure().iter().filter(|(_, there)| *there).count();
-        assert_eq!((there(&case), there(&case.without_structure())), (13, 0));
+        assert_eq!((there(&case), there(&case.without_structure())), (14, 0));
     }
 }

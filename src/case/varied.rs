@@ -3,7 +3,7 @@
 
 use super::{Case, Invalidates, Parameter};
 use crate::error::{Error, Fault, Result, nearest};
-use crate::schema::units::{NUMBER, dimension_of, parse_quantity};
+use crate::schema::units::{NUMBER, dimension_of, parse_of_scalar};
 use crate::schema::{Report, declare, dotted, key, keys_of};
 use std::collections::BTreeMap;
 
@@ -82,7 +82,7 @@ pub(crate) fn check_parameter(
     let share = if *log { NUMBER } else { dimension };
     for (name, dimension) in [("between", dimension), ("expected", dimension), ("deviation", share)] {
         for (_, text) in report.given(&key(name)) {
-            if let Err(found) = parse_quantity(&text, dimension) {
+            if let Err(found) = parse_of_scalar(&text, dimension) {
                 report.fault(&key(name), found, dimension.name, "");
             }
         }

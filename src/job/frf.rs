@@ -37,6 +37,7 @@ pub struct PreparedFrf<'a> {
     name: &'a str,
     wanted: &'a FrfAnalysis,
     stressed: bool,
+    symmetric: bool,
     force: Motion,
     seen: Vec<(String, Motion)>,
     beside: Vec<(usize, Vec<f64>)>,
@@ -64,7 +65,8 @@ pub fn frfs<'a>(prepared: &Prepared<'a>) -> Result<Vec<PreparedFrf<'a>>> {
             seen.push(("drive_point".into(), force.clone()));
         }
         let stressed = prepared.case.stressed_by_forces();
-        all.push(PreparedFrf { name, wanted, stressed, force, seen, beside: Vec::new() });
+        let symmetric = prepared.system.coupling.is_none();
+        all.push(PreparedFrf { name, wanted, stressed, symmetric, force, seen, beside: Vec::new() });
     }
     faults.into_result(all)
 }
@@ -96,9 +98,9 @@ impl PreparedFrf<'_> {
         &self.seen
     }
 
-    /// Whether force and motion may change places: nothing slides.
+    /// Whether force and motion may change places: nothing slides or rotates.
     pub fn reciprocal(&self) -> bool {
-        self.wanted.contact == FrfContact::Open
+        self.wanted.contact == FrfContact::Open && self.symmetric
     }
 
     /// The requested frequencies \[Hz\].

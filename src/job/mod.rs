@@ -42,6 +42,7 @@ mod plausible;
 mod prepared;
 mod pressed;
 mod regions;
+mod rotation;
 mod run;
 #[cfg(feature = "cli")]
 mod run_case;

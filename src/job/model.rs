@@ -3,6 +3,7 @@
 use super::couplings::{add_area_springs, add_couplings};
 use super::links::{add_links, check_turning};
 use super::regions::Regions;
+use super::rotation::add_rotations;
 use crate::case::{Case, ModesAnalysis, SpringPer};
 use crate::error::{Fault, Faults, Result};
 use crate::mesh::Cell;
@@ -67,10 +68,11 @@ pub fn whole_model(case: &Case, regions: &Regions, warnings: &mut Vec<String>) -
     add_couplings(case, regions, &mut model, warnings, &mut faults);
     add_links(case, regions, &mut model, &mut faults);
     check_turning(case, regions, &model, &mut faults);
+    add_rotations(case, &mut model, warnings, &mut faults);
     faults.into_result(model)
 }
 
-/// The structure of the parts that one analysis of real modes names, held as it says.
+/// The structure of the parts that one analysis of real modes names, held as it says, at rest.
 ///
 /// # Errors
 /// A region to clamp that is missing.

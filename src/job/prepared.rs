@@ -28,7 +28,7 @@ pub struct Prepared<'a> {
     pub regions: Regions,
     /// The description of the whole structure.
     pub model: Model,
-    /// Its matrices and degrees of freedom.
+    /// Its matrices, at rest, and degrees of freedom.
     pub assembled: Arc<Assembled>,
     /// System that is analysed.
     pub system: System,
@@ -76,12 +76,13 @@ impl<'a> Prepared<'a> {
         let model = faults.into_result(model)?.unwrap_or_default();
         let assembled = Arc::new(assemble(&model).map_err(|error| in_terms_of_the_case(error, case, None))?);
         let pairs = contact_pairs(case, &regions, &model, &assembled.dofs)?;
+        let (structure, coupling) = assembled.rotating(&model)?;
         let system = System {
-            structure: assembled.structure.clone(),
+            structure,
             pairs,
             load: external_load(case, &regions, &assembled)?,
             prestress: case.prestress.then(|| Arc::new(assembled.prestress(model.clone())) as Arc<_>),
-            coupling: None,
+            coupling,
         };
         Ok(Prepared { case, regions, model, assembled, system, warnings, files })
     }

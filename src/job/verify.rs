@@ -37,7 +37,8 @@ pub fn mounted(prepared: &Prepared, mode: &ComplexMode, thing: &Mounted) -> Resu
         return Err(refused("the thing gives the model degrees of freedom that it did not have"));
     }
     let Some(cea) = &prepared.case.cea else { return Err(refused("no complex eigenvalues were requested")) };
-    let mut system = System { structure: assembled.structure.clone(), ..prepared.system.clone() };
+    let (structure, coupling) = assembled.rotating(&model)?;
+    let mut system = System { structure, coupling, ..prepared.system.clone() };
     let options = prepared.steady_options();
     let steady = solve_steady(&system, &options, &())?;
     let stiffness = tangent_stiffness(&system, &steady.displacement)?.into_owned();

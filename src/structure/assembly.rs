@@ -164,22 +164,32 @@ pub struct GeometricStiffness {
 
 impl Prestress for GeometricStiffness {
     fn geometric_stiffness(&self, displacement: &[f64]) -> Result<SparseMatrix> {
-        if displacement.len() != self.dofs.n_dofs() || displacement.iter().any(|u| !u.is_finite()) {
-            return Err(Error::input(Fault::new(
-                "geometric stiffness",
-                format!("a displacement of {} values, or one that is not finite", displacement.len()),
-                format!("{} finite values", self.dofs.n_dofs()),
-            )));
-        }
-        let u = self.dofs.expand(displacement);
-        let elements = self.model.elements();
-        let couplings = Couplings::new(&self.dofs, &elements);
-        let pattern = Pattern { couplings: &couplings, symbolic: self.stiffness.symbolic() };
-        let [sum] = pattern.sum([true], |work: &mut Workspace, p, coupled, small| {
-            work.add_geometric_stiffness(&self.dofs, elements[p].as_ref(), coupled, &u, small[0]);
-        });
-        Ok(sum.unwrap_or_else(|| pattern.zero()))
+        geometric_stiffness(&self.model, &self.dofs, &self.stiffness, displacement)
     }
+}
+
+/// K_σ of `model` under a static displacement of its degrees of freedom, on the pattern of its `stiffness`.
+pub(super) fn geometric_stiffness(
+    model: &Model,
+    dofs: &DofMap,
+    stiffness: &SparseMatrix,
+    displacement: &[f64],
+) -> Result<SparseMatrix> {
+    if displacement.len() != dofs.n_dofs() || displacement.iter().any(|u| !u.is_finite()) {
+        return Err(Error::input(Fault::new(
+            "geometric stiffness",
+            format!("a displacement of {} values, or one that is not finite", displacement.len()),
+            format!("{} finite values", dofs.n_dofs()),
+        )));
+    }
+    let u = dofs.expand(displacement);
+    let elements = model.elements();
+    let couplings = Couplings::new(dofs, &elements);
+    let pattern = Pattern { couplings: &couplings, symbolic: stiffness.symbolic() };
+    let [sum] = pattern.sum([true], |work: &mut Workspace, p, coupled, small| {
+        work.add_geometric_stiffness(dofs, elements[p].as_ref(), coupled, &u, small[0]);
+    });
+    Ok(sum.unwrap_or_else(|| pattern.zero()))
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use crate::schema::units::{DENSITY, NUMBER, PRESSURE, RATE, TIME};
 use crate::schema::{Invalidates, Report, declare, key};
-use nalgebra::{SMatrix, Vector3};
+use nalgebra::{Rotation3, SMatrix, Unit, Vector3};
 use std::ops::Bound;
 
 declare! {
@@ -87,6 +87,13 @@ impl Material {
             (false, false) if i == j => g,
             _ => 0.0,
         })
+    }
+
+    /// Whether it is the same in all directions about an axis, a unit vector.
+    pub fn is_isotropic_about(&self, axis: [f64; 3]) -> bool {
+        let turn = Rotation3::from_axis_angle(&Unit::new_unchecked(Vector3::from(axis)), 1.0);
+        let (turned, d) = (to_axes([0, 1, 2].map(|k| turn * Vector3::ith(k, 1.0))), self.elasticity());
+        (turned.transpose() * d * turned - d).norm() < 1e-9 * d.norm()
     }
 
     /// D on (11, 22, 33, 12, 23, 31): the inverse of the compliance; none where that is not positive definite.

@@ -2,8 +2,8 @@
 //!
 //! A [`Model`] is plain data. [`assemble`] checks it, finds its free degrees of freedom u = T q ([`DofMap`]), adds up
 //! the [`elements`] and gives M = Tᵀ (Σ M_e) T, and K and C likewise, with the map from free degrees of freedom back
-//! to nodes. [`Assembled::prestress`] gives the geometric stiffness of a static state, [`Assembled::imported`] the same
-//! form to matrices of another program.
+//! to nodes. [`Assembled::prestress`] gives the geometric stiffness of a static state, [`Assembled::rotating`] the terms of a
+//! steady rotation, [`Assembled::imported`] the same form to matrices of another program.
 
 mod as_plate;
 mod assembly;
@@ -20,6 +20,8 @@ mod model;
 mod numbering;
 mod part;
 mod properties;
+mod revolution;
+mod rotation;
 #[cfg(test)]
 pub(crate) mod samples;
 mod scatter;
@@ -40,7 +42,10 @@ pub use free::{FreePart, free_parts, is_free_along, unresisted_parts};
 pub use material::{Material, Orthotropic, RayleighDamping};
 pub use model::{Constraint, Coupling, InclinedSupport, Model, RigidLink, Support};
 pub use part::{Part, PartKind};
-pub use properties::{Bar, Integration, PlateTheory, PointMass, Shell, Solid, Spring};
+pub use properties::{
+    Bar, Integration, PlateTheory, PointMass, Rotation, RotationAxis, Shell, Solid, Spring,
+};
+pub use revolution::{Deviation, deviation};
 pub use section::Section;
 pub use tie::{Tie, Tied, tied};
 pub use warnings::{ThicknessError, element_size, thickness_errors};

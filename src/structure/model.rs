@@ -2,7 +2,7 @@
 
 use super::elements::{MassElement, SpringElement};
 use super::part::{Elements, Part, boxed};
-use super::properties::{PointMass, Shell, Spring};
+use super::properties::{PointMass, Rotation, Shell, Spring};
 
 /// A structure: nodes and all that hangs on them. Degrees of freedom are (ux, uy, uz, rx, ry, rz) at every node.
 #[derive(Debug, Clone, Default)]
@@ -23,6 +23,8 @@ pub struct Model {
     pub supports: Vec<Support>,
     /// Held directions that are along no axis.
     pub inclined_supports: Vec<InclinedSupport>,
+    /// Steady rotations of parts.
+    pub rotations: Vec<Rotation>,
 }
 
 impl Model {
@@ -49,6 +51,11 @@ impl Model {
     /// The shells among its parts.
     pub fn shells(&self) -> impl Iterator<Item = (&Part, &Shell)> {
         self.parts.iter().filter_map(|part| Some((part, part.as_shell()?)))
+    }
+
+    /// The parts that a rotation turns.
+    pub fn turned_by<'a>(&'a self, rotation: &'a Rotation) -> impl Iterator<Item = &'a Part> {
+        self.parts.iter().filter(|part| rotation.parts.contains(&part.name))
     }
 
     /// The part of this name.

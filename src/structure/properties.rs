@@ -4,6 +4,7 @@ use super::elements::waves::shear_coefficient;
 use super::material::Material;
 use super::section::Section;
 use crate::schema::choices;
+use nalgebra::Vector3;
 
 choices! {
     /// Plate theory of bending.
@@ -119,4 +120,43 @@ pub struct Spring {
     pub stiffness: f64,
     /// c \[N s/m or N m s/rad\].
     pub damping: f64,
+}
+
+/// A line about which a body turns.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RotationAxis {
+    /// x₀ \[m\], a point on it.
+    pub point: [f64; 3],
+    /// e, a unit vector.
+    pub direction: [f64; 3],
+}
+
+impl RotationAxis {
+    /// x − x₀ without what is along the axis: r \[m\].
+    pub fn arm(&self, x: [f64; 3]) -> Vector3<f64> {
+        let (e, way) = (Vector3::from(self.direction), Vector3::from(x) - Vector3::from(self.point));
+        way - e * e.dot(&way)
+    }
+
+    /// e × (x − x₀) \[m\]: the velocity at x for Ω = 1 rad/s.
+    pub fn velocity(&self, x: [f64; 3]) -> Vector3<f64> {
+        Vector3::from(self.direction).cross(&(Vector3::from(x) - Vector3::from(self.point)))
+    }
+}
+
+/// Parts of a model that turn about one axis.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rotation {
+    /// Their names.
+    pub parts: Vec<String>,
+    /// The axis.
+    pub axis: RotationAxis,
+    /// Ω \[rad/s\], positive by the right hand about the axis.
+    pub speed: f64,
+    /// Whether G counts.
+    pub gyroscopic: bool,
+    /// Whether −Ω² T counts.
+    pub transport: bool,
+    /// Whether K_σ counts.
+    pub spin_stiffness: bool,
 }

@@ -267,8 +267,18 @@ impl Reduction {
         }
     }
 
-    /// Adds Tᵀ A T, column by column, to `small`, which holds zeros: symmetric to the last bit when A is.
+    /// Adds Tᵀ A T of a symmetric A, column by column, to `small`, which holds zeros: symmetric to the last bit.
     pub fn apply(&self, full: &ElementMatrix, small: &mut [f64]) {
+        self.add(full, small, 1.0);
+    }
+
+    /// The same of a skew-symmetric A.
+    pub fn apply_skew(&self, full: &ElementMatrix, small: &mut [f64]) {
+        self.add(full, small, -1.0);
+    }
+
+    /// `mirrored` is a_ji / a_ij.
+    fn add(&self, full: &ElementMatrix, small: &mut [f64], mirrored: f64) {
         let m = self.size;
         for (b, column, tb) in &self.entries {
             let (from, to) = (full.column(*b), &mut small[column * m..(column + 1) * m]);
@@ -279,7 +289,7 @@ impl Reduction {
         // Several terms a row may add up in another order on the other side of the diagonal.
         for column in 0..m {
             for row in 0..column {
-                small[row * m + column] = small[column * m + row];
+                small[row * m + column] = mirrored * small[column * m + row];
             }
         }
     }

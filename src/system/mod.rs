@@ -54,7 +54,7 @@ pub struct System {
     pub load: Vec<f64>,
     /// Geometric stiffness of the preload, when the case asks for it.
     pub prestress: Option<Arc<dyn Prestress>>,
-    /// Part of imported K and C beyond the symmetric structure.
+    /// Part of K and C beyond the symmetric structure: imported, or of a rotation.
     pub coupling: Option<Coupling>,
 }
 

@@ -6,8 +6,8 @@ use faer::Mat;
 use std::fmt::Debug;
 use std::sync::Arc;
 
-/// M ü + C u̇ + K u: mass positive (semi-)definite, stiffness positive semi-definite, all symmetric, both triangles
-/// stored, M and K on the same sparsity pattern or not.
+/// M ü + C u̇ + K u: mass positive (semi-)definite, stiffness positive semi-definite but for what preload and rotation soften, all symmetric,
+/// both triangles stored, M and K on the same sparsity pattern or not.
 #[derive(Debug, Clone)]
 pub struct Structure {
     /// M \[kg, kg m²\].
@@ -55,7 +55,7 @@ pub trait Prestress: Debug + Send + Sync {
     fn geometric_stiffness(&self, displacement: &[f64]) -> Result<SparseMatrix>;
 }
 
-/// The part of imported matrices that is not symmetric, constant: K gains W k Wᵀ, C gains W c Wᵀ, of low rank r, and where the
+/// The part of imported matrices, or of a rotating structure, that is not symmetric, constant: K gains W k Wᵀ, C gains W c Wᵀ, of low rank r, and where the
 /// rank is high both gain sparse skew-symmetric matrices.
 #[derive(Debug, Clone)]
 pub struct Coupling {

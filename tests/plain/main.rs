@@ -22,6 +22,7 @@ mod mindlin;
 mod plates;
 mod properties;
 mod rig;
+mod rotation;
 mod schema;
 mod solids;
 mod stick_slip;

@@ -1,7 +1,7 @@
 //! Single values of TOML: how they are read, and how a fault reports them.
 
 use super::keys::is_name;
-use super::units::{Dimension, parse_any, parse_quantity};
+use super::units::{Dimension, parse_of_any_scalar, parse_quantity};
 use stridor_base::error::nearest;
 use toml::de::DeValue;
 
@@ -19,7 +19,7 @@ pub fn quantity_of(value: &DeValue, dimension: Option<Dimension>) -> Result<f64,
         DeValue::Float(f) => f.as_str().replace('_', "").parse().ok(),
         DeValue::String(text) => Some(match dimension {
             Some(dimension) => parse_quantity(text, dimension)?,
-            None => parse_any(text)?.0,
+            None => parse_of_any_scalar(text)?,
         }),
         _ => None,
     };

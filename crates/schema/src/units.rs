@@ -1,5 +1,7 @@
 //! Quantities with units: `"1 mm"`, `"10 MN/m"`, `"210 GPa"` → SI values, with their dimension checked.
 
+use std::f64::consts::TAU;
+
 /// A dimension as powers of (kg, m, s, turn). Angles have none; turns are counted, so that a frequency \[Hz\] and a rate \[1/s\],
 /// which differ by 2π where something turns, are not taken for one another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -33,6 +35,9 @@ pub const AREA_MOMENT: Dimension =
 pub const FREQUENCY: Dimension = dimension([0, 0, -1, 1], "Hz", "a frequency such as \"6 kHz\"");
 /// Per second.
 pub const RATE: Dimension = dimension([0, 0, -1, 0], "1/s", "a rate such as \"5 1/s\"");
+/// Radians per second; turns per minute are taken, too.
+pub const ANGULAR_VELOCITY: Dimension =
+    dimension([0, 0, -1, 0], "rad/s", "an angular velocity such as \"600 rpm\" or \"62.8 rad/s\"");
 /// Seconds.
 pub const TIME: Dimension = dimension([0, 0, 1, 0], "s", "a time such as \"1 us\"");
 /// Kilograms.
@@ -81,6 +86,9 @@ pub fn parse_quantity(text: &str, expected: Dimension) -> Result<f64, String> {
     if powers == expected.powers {
         return Ok(value);
     }
+    if unit == PER_MINUTE && expected.symbol == ANGULAR_VELOCITY.symbol {
+        return Ok(TAU * value);
+    }
     let text = text.trim();
     Err(match unit {
         "" => format!("\"{text}\", a number without a unit (in SI, write {text} without quotation marks)"),
@@ -88,8 +96,26 @@ pub fn parse_quantity(text: &str, expected: Dimension) -> Result<f64, String> {
     })
 }
 
+/// The unit of turns per minute.
+const PER_MINUTE: &str = "rpm";
+
+/// Reads the value of a scalar that is not known yet as SI: turns per minute are an angular velocity.
+pub(super) fn parse_of_any_scalar(text: &str) -> Result<f64, String> {
+    let (value, unit, _) = parse_any(text)?;
+    Ok(if unit == PER_MINUTE { TAU * value } else { value })
+}
+
+/// [`parse_quantity`] of a value of another scalar, which was read before that was known: turns per minute are no frequency there.
+pub fn parse_of_scalar(text: &str, expected: Dimension) -> Result<f64, String> {
+    let (_, unit, powers) = parse_any(text)?;
+    match unit == PER_MINUTE && powers == expected.powers {
+        true => Err(format!("\"{}\", an angular velocity", text.trim())),
+        false => parse_quantity(text, expected),
+    }
+}
+
 /// Reads `"1.5 mm"` as SI, with its unit and the powers of that.
-pub(super) fn parse_any(text: &str) -> Result<(f64, &str, Powers), String> {
+fn parse_any(text: &str) -> Result<(f64, &str, Powers), String> {
     let text = text.trim();
     let bytes = text.as_bytes();
     let exponent = |i: usize| {
@@ -226,6 +252,9 @@ mod tests {
         close("5/ms", RATE, 5e3);
         close("-2e3 rad/s", RATE, -2e3);
         close("1200 rpm", FREQUENCY, 20.0);
+        close("30 rpm", ANGULAR_VELOCITY, std::f64::consts::PI);
+        close("-30 rpm", dimension_of("rad/s"), -std::f64::consts::PI);
+        close("2 rad/s", ANGULAR_VELOCITY, 2.0);
         close("5 s/m", INVERSE_VELOCITY, 5.0);
         close("1 GN/m^2", STIFFNESS.per_metre(1, "N/m^2", "a stiffness per length"), 1e9);
     }
@@ -285,6 +314,14 @@ mod tests {
         // 2π lies between them.
         assert!(parse_quantity("20 Hz", RATE).unwrap_err().contains("dimension"));
         assert!(parse_quantity("20 rad/s", FREQUENCY).unwrap_err().contains("dimension"));
+        assert!(parse_quantity("20 Hz", ANGULAR_VELOCITY).unwrap_err().contains("dimension"));
+        // Values of a scalar that is known later only are read as what they are taken for then.
+        for (text, dimension) in
+            [("30 rpm", ANGULAR_VELOCITY), ("2 rad/s", ANGULAR_VELOCITY), ("5 Hz", FREQUENCY)]
+        {
+            assert_eq!(parse_of_any_scalar(text), parse_of_scalar(text, dimension));
+        }
+        assert!(parse_of_scalar("30 rpm", FREQUENCY).unwrap_err().contains("angular velocity"));
         assert!(parse_quantity("20 1", NUMBER).is_err() && parse_quantity("20 1 s", TIME).is_err());
         assert!(parse_quantity("1 m^99999999999", LENGTH).is_err());
     }

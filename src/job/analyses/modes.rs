@@ -11,6 +11,7 @@ use crate::job::modes::{
 use crate::job::prepared::Prepared;
 use crate::job::run::Run;
 use crate::modal;
+use crate::system::System;
 
 /// Real modes.
 pub const MODES: Analysis = Analysis {
@@ -79,10 +80,11 @@ impl<'a> Planned<'a> for Sets<'a> {
     }
 }
 
-/// Real modes without contact. Lists of the whole's modes take their share of those that span the complex analysis.
+/// Real modes without contact. Lists of the whole's modes take their share of those that span the complex analysis, where nothing rotates.
 fn open(run: &mut Run, name: &str, set: &ModesAnalysis) -> Result<crate::results::NamedModes> {
     let prepared = run.prepared;
     if of_the_whole(prepared, set)
+        && prepared.model.rotations.is_empty()
         && let Some(basis) = run.basis()?
         && let Some(modes) = basis.lowest(wanted(set, prepared.system.n_dofs()))
     {
@@ -91,11 +93,12 @@ fn open(run: &mut Run, name: &str, set: &ModesAnalysis) -> Result<crate::results
     run.timed(&format!("real modes, {name}"), |observer| part_modes(prepared, name, observer))
 }
 
-/// Real modes with the contact as it is in steady sliding.
+/// Real modes with the contact as it is in steady sliding, at rest for the rest.
 fn closed(run: &mut Run, name: &str, set: &ModesAnalysis) -> Result<crate::results::NamedModes> {
     let prepared = run.prepared;
     let steady = run.steady()?;
-    let structure = equilibrium::closed_structure(&prepared.system, &steady)?;
+    let system = System { structure: prepared.assembled.structure.clone(), ..prepared.system.clone() };
+    let structure = equilibrium::closed_structure(&system, &steady)?;
     let wanted = wanted(set, prepared.system.n_dofs());
     let phase = format!("real modes, {name}");
     let (modes, _) = run.timed(&phase, |observer| modal::compute(&structure, wanted, observer))?;

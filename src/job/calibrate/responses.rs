@@ -89,7 +89,8 @@ pub fn measured(prepared: &Prepared, name: &str, data: &MeasuredData, frf: &str)
     }
     if prepared.system.coupling.is_some() {
         let expected = "symmetric matrices, for responses to calibrate against";
-        faults.push(Fault::new("`matrices`", "matrices that are not symmetric", expected));
+        let place = if prepared.case.matrices.is_some() { "`matrices`" } else { "`rotation`" };
+        faults.push(Fault::new(place, "matrices that are not symmetric", expected));
     }
     if set.frfs.is_empty() {
         faults.push(Fault::new(key("frf"), "no frequency response in the file", "some"));

@@ -64,6 +64,22 @@ impl ElementMatrix {
         }
     }
 
+    /// Becomes `factor` (A − Aᵀ).
+    pub fn become_skew(&mut self, factor: f64) {
+        for j in 0..self.size {
+            for i in 0..=j {
+                let value = factor * (self.get(i, j) - self.get(j, i));
+                self.set(i, j, value);
+                self.set(j, i, -value);
+            }
+        }
+    }
+
+    /// Becomes `factor` A.
+    pub fn scale(&mut self, factor: f64) {
+        self.values.iter_mut().for_each(|value| *value *= factor);
+    }
+
     /// Copies what is above the diagonal to below it.
     pub fn mirror(&mut self) {
         for j in 0..self.size {

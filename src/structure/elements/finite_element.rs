@@ -1,7 +1,7 @@
 //! Interface of a finite element, of any number of nodes and freedoms.
 
 use super::ElementMatrix;
-use crate::structure::Material;
+use crate::structure::{Material, RotationAxis};
 
 /// The components (ux, uy, uz, rx, ry, rz) of a node.
 const ALL: &[usize] = &[0, 1, 2, 3, 4, 5];
@@ -69,6 +69,12 @@ pub trait FiniteElement: Send + Sync {
 
     /// K_σ of the membrane or axial forces that the displacement of all nodes of the model gives it, linear in it.
     fn geometric_stiffness(&self, _displacement: &[[f64; 6]], _k: &mut ElementMatrix) -> bool {
+        false
+    }
+
+    /// D = ∫ ρ Nᵀ ∂_θN dV and T = ∫ ρ (∂_θN)ᵀ ∂_θN dV \[kg, kg m, kg m²\] of an element that turns about an axis, ∂_θ = (e × (x − x₀))·∇
+    /// ([`crate::structure::Rotation`]).
+    fn transport(&self, _axis: &RotationAxis, _matrices: [&mut ElementMatrix; 2]) -> bool {
         false
     }
 

@@ -1,8 +1,11 @@
 //! The thin flat shell: DKT bending and OPT membrane on a triangle, alone or as one of the four of a quadrilateral.
 
 use super::waves::{kirchhoff_wavenumber, thickness_error};
-use super::{Acting, ElementMatrix, FacePoint, FiniteElement, FlatShell, TheoryError, WeightedTriangle};
-use crate::structure::{Material, Shell};
+use super::{
+    Acting, ElementMatrix, FacePoint, FiniteElement, FlatShell, TheoryError, WeightedTriangle,
+    plate_transport,
+};
+use crate::structure::{Material, RotationAxis, Shell};
 use nalgebra::SMatrix;
 
 /// A triangle of a plate by Kirchhoff's theory, 18 freedoms.
@@ -72,6 +75,16 @@ impl FiniteElement for KirchhoffTriangle<'_> {
         let u = self.nodes.map(|n| displacement[n]);
         let forces = shell.membrane_forces(&self.plate.material, self.plate.thickness, &u);
         self.weighted(&shell.geometric_stiffness(forces), k)
+    }
+
+    fn transport(&self, axis: &RotationAxis, matrices: [&mut ElementMatrix; 2]) -> bool {
+        plate_transport(
+            self,
+            (self.plate, self.coordinates),
+            &[WeightedTriangle { nodes: self.nodes, weight: self.weight }],
+            axis,
+            matrices,
+        )
     }
 
     fn mass_and_center(&self) -> (f64, [f64; 3]) {

@@ -26,6 +26,7 @@
 //! | [`geometric`] | string effect of membrane and axial forces | `geometric` |
 //! | [`FlatShell`] | DKT + OPT in space, 18 degrees of freedom | `shell` |
 //! | [`mindlin`] | bending and shear with discrete shear constraints on the sides | `mindlin/sides` |
+//! | [`plate_transport`] | gyroscopic and transport terms of plates that rotate | `plate_transport` |
 //! | [`waves`] | bending waves of both theories, and how far Kirchhoff's is off | `waves` |
 //! | [`split_face`] | quadrilaterals as the mean of their two splittings into triangles | `face` |
 //! | [`Beam`] | Euler–Bernoulli bar in space, 12 degrees of freedom | `beam` |
@@ -46,6 +47,7 @@ mod kirchhoff;
 pub mod mass;
 pub mod mindlin;
 pub mod opt;
+mod plate_transport;
 mod point;
 mod shell;
 mod solid;
@@ -59,6 +61,7 @@ pub use face::{WeightedTriangle, split_face};
 pub use finite_element::{Acting, FacePoint, FiniteElement, TheoryError};
 pub use kirchhoff::KirchhoffTriangle;
 pub use mindlin::{MindlinQuadrilateral, MindlinTriangle};
+pub use plate_transport::plate_transport;
 pub use point::{MassElement, SpringElement, mass_diagonal, spring_direction};
 pub use shell::FlatShell;
 pub use solid::SolidElement;

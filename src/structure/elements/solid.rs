@@ -16,7 +16,7 @@
 
 use super::{ElementMatrix, FiniteElement};
 use crate::mesh::{Cell, CellKind};
-use crate::structure::{Integration, Material, Solid};
+use crate::structure::{Integration, Material, RotationAxis, Solid};
 use nalgebra::{Matrix3, SMatrix, Vector3};
 use std::sync::OnceLock;
 
@@ -313,6 +313,30 @@ impl FiniteElement for SolidElement<'_> {
             }
         }
         k.mirror();
+        true
+    }
+
+    fn transport(&self, axis: &RotationAxis, [convected, transport]: [&mut ElementMatrix; 2]) -> bool {
+        let mut gradients = Vec::with_capacity(30);
+        for point in &Rules::of(self.cell.kind()).mass {
+            let mass = self.solid.material.density * self.gradients(point, &mut gradients);
+            let at = std::array::from_fn(|k| {
+                self.cell.nodes().iter().zip(&point.shape).map(|(n, s)| s * self.coordinates[*n][k]).sum()
+            });
+            let velocity = axis.velocity(at);
+            let along: Vec<f64> = gradients.iter().map(|g| velocity.dot(&Vector3::from(*g))).collect();
+            for (j, b) in along.iter().enumerate() {
+                for (i, (shape, a)) in point.shape.iter().zip(&along).enumerate() {
+                    for (matrix, share) in
+                        [(&mut *convected, mass * shape * b), (&mut *transport, mass * a * b)]
+                    {
+                        (0..3).for_each(|k| {
+                            matrix.set(3 * i + k, 3 * j + k, matrix.get(3 * i + k, 3 * j + k) + share)
+                        });
+                    }
+                }
+            }
+        }
         true
     }
 

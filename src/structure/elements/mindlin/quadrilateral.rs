@@ -5,9 +5,10 @@ use crate::structure::elements::bciz::{self, deflection_products};
 use crate::structure::elements::shell::{bending_directions, rows_in_global};
 use crate::structure::elements::triangle::twice_area;
 use crate::structure::elements::{
-    Acting, ElementMatrix, FacePoint, FiniteElement, FlatShell, geometric, mass, mean, symmetrized, to_global,
+    Acting, ElementMatrix, FacePoint, FiniteElement, FlatShell, WeightedTriangle, geometric, mass, mean,
+    plate_transport, symmetrized, to_global,
 };
-use crate::structure::{Material, Shell};
+use crate::structure::{Material, RotationAxis, Shell};
 use nalgebra::{Matrix2, Matrix3, RowSVector, SMatrix, Vector3};
 
 /// The triangles of both splittings.
@@ -328,6 +329,16 @@ impl FiniteElement for MindlinQuadrilateral<'_> {
         }
         k.copy(&to_global(&with_bending(&symmetrized(bending)), &plane.frame));
         true
+    }
+
+    fn transport(&self, axis: &RotationAxis, matrices: [&mut ElementMatrix; 2]) -> bool {
+        plate_transport(
+            self,
+            (self.plate, self.coordinates),
+            &TRIANGLES.map(|t| WeightedTriangle { nodes: t.map(|k| self.nodes[k]), weight: 0.5 }),
+            axis,
+            matrices,
+        )
     }
 
     fn mass_and_center(&self) -> (f64, [f64; 3]) {

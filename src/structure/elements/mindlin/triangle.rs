@@ -5,9 +5,10 @@ use crate::structure::elements::bciz::{self, QUADRATIC_GRAM, deflection_products
 use crate::structure::elements::shell::{BENDING, rows_in_global};
 use crate::structure::elements::triangle::{gradients, twice_area};
 use crate::structure::elements::{
-    Acting, ElementMatrix, FacePoint, FiniteElement, FlatShell, geometric, mass, mean, symmetrized,
+    Acting, ElementMatrix, FacePoint, FiniteElement, FlatShell, WeightedTriangle, geometric, mass, mean,
+    plate_transport, symmetrized,
 };
-use crate::structure::{Material, Shell};
+use crate::structure::{Material, RotationAxis, Shell};
 use nalgebra::{RowSVector, SMatrix};
 
 /// A triangle of a plate by Mindlin's theory, 18 freedoms.
@@ -157,6 +158,16 @@ impl FiniteElement for MindlinTriangle<'_> {
         let bending = map.transpose() * geometric::plate(corners, forces) * map;
         k.copy(&shell.embedded(Some(&symmetrized(bending)), None));
         true
+    }
+
+    fn transport(&self, axis: &RotationAxis, matrices: [&mut ElementMatrix; 2]) -> bool {
+        plate_transport(
+            self,
+            (self.plate, self.coordinates),
+            &[WeightedTriangle { nodes: self.nodes, weight: 1.0 }],
+            axis,
+            matrices,
+        )
     }
 
     fn mass_and_center(&self) -> (f64, [f64; 3]) {
