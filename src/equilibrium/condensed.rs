@@ -15,7 +15,7 @@ use faer::Mat;
 /// K alone may be singular (a body that only the contact holds), A is not, unless nothing holds the body at all.
 /// The identity K u + U R = f ⇔ A u = f − U R + Σ g d gᵀu is exact, so the d > 0 only decide the conditioning:
 /// they are taken from the law's own stiffness. A depends on neither load, friction nor velocity.
-pub struct Condensed {
+pub(super) struct Condensed {
     factor: Box<dyn SymmetricFactor>,
     /// d \[N/m\] of each point.
     pub(super) closed: Vec<f64>,
@@ -33,16 +33,10 @@ impl Condensed {
     ///
     /// # Errors
     /// A rigid motion that not even the closed contact resists.
-    pub fn new(system: &System, k: &SparseMatrix) -> Result<Self> {
+    pub(super) fn new(system: &System, k: &SparseMatrix) -> Result<Self> {
         let n = system.n_dofs();
         let points: Vec<&ContactPoint> = system.points().map(|(_, point)| point).collect();
-        let (a, closed) = closed_stiffness(system, k);
-        let factor = system.structure.engine.factorize(&a).map_err(|error| match is_singular(&error) {
-            true => nothing_holds(error.to_string().trim_end_matches('.')),
-            // Memory that does not suffice has another remedy.
-            false => error,
-        })?;
-        check_held(&a, &*factor)?;
+        let (factor, closed) = closed_factor(system, k)?;
         let mut responses = Mat::<f64>::zeros(n, points.len());
         for (p, point) in points.iter().enumerate() {
             point.normal.iter().for_each(|(i, v)| responses[(i, p)] = v);
@@ -72,7 +66,25 @@ impl Condensed {
     }
 }
 
-/// A = K + Σ d g gᵀ, in which every contact point is closed, and the d of the points.
+/// The factors of A = K + Σ d g gᵀ, in which every contact point is closed, and the d of the points.
+///
+/// # Errors
+/// A rigid motion that not even the closed contact resists.
+pub(super) fn closed_factor(
+    system: &System,
+    k: &SparseMatrix,
+) -> Result<(Box<dyn SymmetricFactor>, Vec<f64>)> {
+    let (a, closed) = closed_stiffness(system, k);
+    let factor = system.structure.engine.factorize(&a).map_err(|error| match is_singular(&error) {
+        true => nothing_holds(error.to_string().trim_end_matches('.')),
+        // Memory that does not suffice has another remedy.
+        false => error,
+    })?;
+    check_held(&a, &*factor)?;
+    Ok((factor, closed))
+}
+
+/// A, and the d of the points.
 pub(crate) fn closed_stiffness(system: &System, k: &SparseMatrix) -> (SparseMatrix, Vec<f64>) {
     let closed = closed_springs(system, k);
     let springs = system.points().zip(&closed).map(|((_, point), d)| (*d, &point.normal));

@@ -2,9 +2,9 @@
 
 use super::{PointState, SteadySliding};
 use crate::error::Result;
-use crate::linalg::sparse::{add_scaled, sum_of_squares};
+use crate::linalg::sparse::{add_scaled, multiply_vector, sum_of_squares};
 use crate::linalg::{SparseMatrix, SparseVector};
-use crate::system::{ContactMotion, ContactPoint, ContactTangent, Structure, System};
+use crate::system::{ContactMotion, ContactPoint, ContactTangent, Coupling, Structure, System};
 use std::borrow::Cow;
 
 /// The linearised contact: K_c = Σ U k Uᵀ and C_c = Σ U c Uᵀ with U = \[g t₁ t₂\] of each point that carries load.
@@ -69,6 +69,18 @@ pub fn linearize_points(points: &[PointState]) -> LinearContact {
         }
     }
     LinearContact { blocks }
+}
+
+/// Adds (W k Wᵀ + N) u, what is not symmetric in an imported stiffness, to a force.
+pub(super) fn unsymmetric_force(rest: &Coupling, u: &[f64], force: &mut [f64]) {
+    let motions: Vec<f64> = rest.directions.iter().map(|w| w.dot(u)).collect();
+    for (i, w) in rest.directions.iter().enumerate() {
+        w.add_to(motions.iter().enumerate().map(|(j, e)| rest.stiffness[(i, j)] * e).sum(), force);
+    }
+    if let Some(skew) = &rest.skew {
+        // A product with a matrix stored by columns is that with its transpose.
+        force.iter_mut().zip(multiply_vector(&skew.stiffness, u)).for_each(|(f, v)| *f -= v);
+    }
 }
 
 /// K, or K + K_σ(u₀) when the system asks for the geometric stiffness of the preload.

@@ -3,25 +3,32 @@
 //! K u₀ + Σ [g N − t₁ F₁ − t₂ F₂] = f, ΣN = load of each pair. [`solve_steady`] finds u₀; [`linearize`] gives
 //! K_c = Σ U k Uᵀ and C_c = Σ U c Uᵀ as small blocks, [`tangent_stiffness`] K + K_σ(u₀).
 
+mod assembled;
+mod balance;
 mod condensed;
+mod conditions;
 mod linear;
+mod load_steps;
 mod nearby;
 mod newton;
+mod point_laws;
 #[cfg(test)]
 pub(crate) mod samples;
+mod solver;
 mod steady;
 #[cfg(test)]
 mod tests;
 
+pub use condensed::closed_springs;
 #[cfg(test)]
 pub(crate) use condensed::closed_stiffness;
-pub use condensed::{Condensed, closed_springs};
 pub use linear::{
     ContactBlock, LinearContact, closed_structure, contact_force, directions, linearize, linearize_points,
     tangent_stiffness,
 };
 pub use nearby::Nearby;
-pub use steady::{check, solve_points, solve_steady, solve_steady_with, steady_sliding};
+pub use solver::SteadySolver;
+pub use steady::{check, solve_steady, steady_sliding};
 
 use crate::system::{ContactForces, ContactTangent};
 

@@ -2,10 +2,11 @@
 
 use super::SteadyOptions;
 use super::SteadySliding;
-use super::condensed::Condensed;
+use super::balance::{residual, states};
 use super::linear::tangent_stiffness;
-use super::newton::{ContactProblem, norm};
-use super::steady::{residual, solve_steady, states};
+use super::point_laws::{State, norm};
+use super::solver::SteadySolver;
+use super::steady::solve_steady;
 use crate::error::{Error, Fault, Result};
 use crate::system::System;
 
@@ -17,7 +18,7 @@ use crate::system::System;
 pub struct Nearby<'a> {
     system: &'a System,
     steady: &'a SteadySliding,
-    condensed: Condensed,
+    solver: SteadySolver<'a>,
 }
 
 impl<'a> Nearby<'a> {
@@ -27,7 +28,7 @@ impl<'a> Nearby<'a> {
     /// A rigid motion that not even the closed contact resists.
     pub fn new(system: &'a System, steady: &'a SteadySliding) -> Result<Self> {
         let k = tangent_stiffness(system, &steady.displacement)?;
-        Ok(Nearby { system, steady, condensed: Condensed::new(system, &k)? })
+        Ok(Nearby { system, steady, solver: SteadySolver::new(system, k)? })
     }
 
     /// The steady state of `other`, which has the same degrees of freedom and contact points. Where the steps do not
@@ -57,29 +58,27 @@ impl<'a> Nearby<'a> {
         const STEPS: usize = 40;
         const SETTLED: f64 = 1e-15;
         const ACCEPTED: f64 = 1e-11;
-        let contact = ContactProblem::new(&other.pairs, &other.load, &self.condensed);
-        let mut u = self.steady.displacement.clone();
-        let mut approach = self.steady.approach.clone();
-        let mut penetration: Vec<f64> = self.steady.points.iter().map(|point| point.penetration).collect();
+        let problem = self.solver.problem(&other.pairs, &other.load, &SteadyOptions::default());
+        let mut state = State::of(self.steady);
         let mut last = f64::INFINITY;
         for iterations in 1..=STEPS {
-            let k = tangent_stiffness(other, &u)?;
-            let (r, _) = residual(other, &k, &u, &states(&other.pairs, &penetration));
-            let correction = contact.full_correction(&u, &approach, &penetration, &r);
-            let Some(correction) = correction else { return Ok(None) };
-            let size = norm(&u).max(norm(&approach)).max(f64::MIN_POSITIVE);
+            let k = tangent_stiffness(other, &state.displacement)?;
+            let (r, _) = residual(other, &k, &state.displacement, &states(&other.pairs, &state.penetration));
+            let Some(correction) = problem.correction(&state, &r) else { return Ok(None) };
+            let size = norm(&state.displacement).max(norm(&state.approach)).max(f64::MIN_POSITIVE);
             let step = norm(&correction.displacement).max(norm(&correction.approach)) / size;
             // Round-off: the steps are small and shrink no more. The smaller step is the better state.
             let shrinks = step < 0.5 * last;
             if step.is_nan() || (!shrinks && last > ACCEPTED && iterations > 4) {
                 return Ok(None);
             }
-            correction.add_to(&mut u, &mut approach, &mut penetration);
+            state.add(1.0, &correction);
             if step <= SETTLED || (step <= ACCEPTED && !shrinks) {
-                let k = tangent_stiffness(other, &u)?;
+                let State { displacement, approach, penetration } = state;
+                let k = tangent_stiffness(other, &displacement)?;
                 let points = states(&other.pairs, &penetration);
-                let residual = residual(other, &k, &u, &points).1;
-                return Ok(Some(SteadySliding { displacement: u, approach, points, iterations, residual }));
+                let residual = residual(other, &k, &displacement, &points).1;
+                return Ok(Some(SteadySliding { displacement, approach, points, iterations, residual }));
             }
             last = step;
         }

@@ -9,7 +9,7 @@ use super::operating_point::OperatingPoint;
 use super::prepared::{Prepared, external_load};
 use super::studies::{SHARED, studies};
 use crate::case::{Case, CeaAnalysis, Invalidates, VariedCase};
-use crate::equilibrium::{self, Condensed, PointState, solve_points, tangent_stiffness};
+use crate::equilibrium::{self, PointState, SteadySolver, tangent_stiffness};
 use crate::error::Result;
 use crate::linalg::c64;
 use crate::linalg::multivector::gram;
@@ -66,7 +66,7 @@ pub(super) struct Start<'a> {
     pub(super) nominal: &'a OperatingPoint<'a>,
     /// The case without its studies.
     pub(super) case: Case,
-    condensed: Condensed,
+    solver: SteadySolver<'a>,
     /// The structure with its contact closed, where that has many points.
     pub(super) closed: Option<ClosedContact>,
     dampings: Vec<(String, f64, f64)>,
@@ -82,11 +82,11 @@ impl<'a> Start<'a> {
         let others = dampings.iter().map(|d| other_damping(nominal, &case, d)).collect::<Result<_>>()?;
         let OperatingPoint { system, steady, real, .. } = nominal;
         let k = tangent_stiffness(system, &steady.displacement)?;
-        let condensed = Condensed::new(system, &k)?;
+        let solver = SteadySolver::new(system, k)?.near(steady);
         let reference = Reference::new(system, real);
         let top = TAU * case.cea.as_ref().expect("a case with complex modes").band[1];
         let closed = ClosedContact::of((system, steady), real, top, &())?;
-        Ok(Start { nominal, case, condensed, closed, dampings, others, reference })
+        Ok(Start { nominal, case, solver, closed, dampings, others, reference })
     }
 }
 
@@ -133,7 +133,7 @@ impl<'a> States<'a> {
             false => Cow::Borrowed(&system.load),
         };
         let pairs = with_laws(&system.pairs, case)?;
-        solve_points(&pairs, &load, &self.start.condensed, &prepared.steady_options())
+        self.start.solver.points(&pairs, &load, &prepared.steady_options())
     }
 }
 

@@ -210,6 +210,12 @@ impl Coupling {
         Coupling { directions: Vec::new(), stiffness: none(), damping: none(), skew: Some(skew) }
     }
 
+    /// Whether K gains something.
+    pub fn has_stiffness(&self) -> bool {
+        let skew = self.skew.as_ref().is_some_and(|skew| skew.stiffness.val().iter().any(|v| *v != 0.0));
+        skew || self.stiffness.norm_max() > 0.0
+    }
+
     /// W k Wᵀ and W c Wᵀ with the sparse skew parts, as sparse matrices, for writing.
     pub fn assembled(&self, n: usize) -> Result<[SparseMatrix; 2]> {
         let whole = |small: &Mat<f64>| {

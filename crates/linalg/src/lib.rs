@@ -5,6 +5,7 @@
 //! * [`eigenpairs`]: the lowest eigenpairs of K x = θ M x with the count that proves none is missing, by
 //!   [`lanczos`].
 //! * [`assignment`]: the pairs of least total cost.
+//! * [`gmres`]: linear systems that are not symmetric, by products and a preconditioner.
 //! * [`dense`]: small symmetric eigenproblems and the MAC of two vectors.
 //! * [`row_sparse`]: symmetric matrices with entries in a few rows.
 //! * [`lu`]: small dense matrices factorised.
@@ -28,6 +29,7 @@ pub mod dense;
 pub mod eigenpairs;
 pub mod extended;
 pub mod factor;
+pub mod gmres;
 pub mod lanczos;
 mod lanes;
 pub mod lu;

@@ -1,0 +1,45 @@
+//! How far a state is from equilibrium on the full system.
+
+use super::PointState;
+use super::linear::{directions, unsymmetric_force};
+use super::point_laws::respond;
+use crate::linalg::SparseMatrix;
+use crate::linalg::sparse::multiply_vector;
+use crate::system::{ContactPair, ContactPoint, System};
+
+/// f − K u − r_c, and its size relative to ‖f‖ + ‖r_c‖.
+pub(super) fn residual(
+    system: &System,
+    k: &SparseMatrix,
+    u: &[f64],
+    states: &[PointState],
+) -> (Vec<f64>, f64) {
+    let mut contact = vec![0.0; u.len()];
+    for ((_, point), state) in system.points().zip(states) {
+        let [g, t1, t2] = directions(point);
+        g.add_to(state.forces.normal, &mut contact);
+        t1.add_to(-state.forces.friction[0], &mut contact);
+        t2.add_to(-state.forces.friction[1], &mut contact);
+    }
+    let mut elastic = multiply_vector(k, u);
+    system.coupling.iter().for_each(|rest| unsymmetric_force(rest, u, &mut elastic));
+    let r: Vec<f64> = (0..u.len()).map(|i| system.load[i] - elastic[i] - contact[i]).collect();
+    let scale = norm_2(&system.load) + norm_2(&contact);
+    let size = if scale > 0.0 { norm_2(&r) / scale } else { norm_2(&r) };
+    (r, size)
+}
+
+/// The law of every point at its penetration.
+pub(super) fn states(pairs: &[ContactPair], penetrations: &[f64]) -> Vec<PointState> {
+    let points = pairs.iter().flat_map(|pair| pair.points.iter().map(move |p| (pair, p)));
+    let at = |((pair, point), penetration): ((&ContactPair, &ContactPoint), &f64)| {
+        let (forces, tangent) = respond(pair, point, *penetration);
+        PointState { penetration: *penetration, forces, tangent }
+    };
+    points.zip(penetrations).map(at).collect()
+}
+
+/// ‖x‖₂.
+pub(super) fn norm_2(x: &[f64]) -> f64 {
+    x.iter().map(|v| v * v).sum::<f64>().sqrt()
+}
