@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 use stridor::contact::{
-    Coefficient, ContactSide, FrictionCoefficient, NormalLaw, SlidingLaw, Surfaces, pair_surfaces,
+    Coefficient, ContactSide, FrictionCoefficient, NormalLaw, Sliding, SlidingLaw, Surfaces, pair_surfaces,
 };
 use stridor::equilibrium::steady_sliding;
 use stridor::modal::{ModesWanted, real_modes};
@@ -57,8 +57,8 @@ fn main() -> stridor::error::Result<()> {
     };
     let assembled = assemble(&model)?;
     let [disc, pad] = [&model.parts[0], &model.parts[1]];
-    let surfaces =
-        Surfaces::new("face", &model.nodes, [pad, disc], ContactSide::Face(&pad.cells), [0.0, 1.0, 0.0]);
+    let (side, sliding) = (ContactSide::Face(&pad.cells), Sliding::Along([0.0, 1.0, 0.0]));
+    let surfaces = Surfaces::new("face", &model.nodes, [pad, disc], side, sliding);
     let pair = ContactPair {
         name: "face".into(),
         points: pair_surfaces(&surfaces, &|entries| assembled.dofs.reduce(entries))?.into(),

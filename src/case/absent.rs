@@ -12,7 +12,7 @@ const ABSENT: [(&[&str], &str); 11] = [
     ),
     (
         &["rotation_speed", "rotational_speed", "angular_velocity", "omega", "rpm", "spin"],
-        "Parts turn by [rotation.NAME] with `parts` and `speed`; the speed at a contact is its `sliding_velocity`",
+        "Parts turn by [rotation.NAME] with `parts` and `speed`; the speed at a contact is its `sliding_velocity`, or the speed of its `rotation`",
     ),
     (
         &["pressure"],

@@ -1,5 +1,6 @@
 //! `[contact.NAME]`: what presses and slides, and its laws.
 
+use crate::contact::Sliding;
 pub use crate::contact::{FrictionCurve, FrictionSense as Sense};
 use crate::schema::units::*;
 use crate::schema::{Derivative, Form, Invalidates, Report, Units, Value, choices, declare, key, variants};
@@ -29,10 +30,11 @@ declare! {
             .derivative(|_| Derivative::None("it only decides which contact points are considered")),
         /// Normal load or approach of the pair.
         pub pressing: Pressing = key::flat(),
-        /// V \[m/s\] of the counter-body relative to the body along the sliding direction.
-        pub sliding_velocity: f64 = key::quantity(VELOCITY)
-            .check("a velocity that is not zero (steady sliding has no state at rest)", |v| *v != 0.0)
-            .invalidates(Invalidates::Equilibrium),
+        /// Gaps of the points within reach: those of the meshes, or none.
+        pub initial_gap: InitialGap =
+            key::choice().or(InitialGap::Geometry).invalidates(Invalidates::Interface),
+        /// How the counter-body moves past the body.
+        pub sliding: SlidingChoice = key::flat(),
         /// How far the counter-body travels in all along the sliding direction \[m\]; it must stay under the body.
         pub stroke: f64 = {
             let given = points.is_some();
@@ -43,9 +45,6 @@ declare! {
                 .invalidates(Invalidates::Interface)
                 .derivative(|_| Derivative::None("it only decides which contact points are considered"))
         },
-        /// Direction in which the counter-body slides.
-        pub sliding_direction: [f64; 3] =
-            key::direction().or([1.0, 0.0, 0.0]).invalidates(Invalidates::Interface),
         /// Tilts and moves everything connected to the body; as meshed when absent.
         pub placement: Option<Placement> = key::table().optional(),
         /// Normal law.
@@ -76,6 +75,8 @@ fn check(contact: &Contact, report: &mut Report) {
         ("counter", !contact.counter.is_empty()),
         ("into", contact.into.is_some()),
         ("placement", contact.placement.is_some()),
+        ("initial_gap", contact.initial_gap != InitialGap::Geometry),
+        ("rotation", matches!(contact.sliding, SlidingChoice::About { .. })),
     ];
     for (key, _) in on_mesh.into_iter().filter(|(_, there)| given && *there) {
         report.fault(key, "a place on a mesh", "no such key beside `points`", "Remove it");
@@ -92,6 +93,10 @@ fn check(contact: &Contact, report: &mut Report) {
     }
     if !ground && !given && contact.into.is_some() {
         report.fault("into", "a direction", "no such key for a contact between two parts", "Remove it");
+    }
+    if contact.stroke > 0.0 && matches!(contact.sliding, SlidingChoice::About { .. }) {
+        let expected = "no such key beside `rotation`: a counter-body that turns keeps its place";
+        report.fault("stroke", "a way along a direction", expected, "Remove it");
     }
     let Some(_) = &contact.bristle else { return };
     if contact.friction.regularisation > 0.0 {
@@ -155,6 +160,75 @@ impl Value for ContactPoints {
     fn form() -> Form {
         let rows = Form::List(Box::new(Form::List(Box::new(Form::Text), None)), None);
         Form::Either(Box::new(Form::Text), Box::new(rows))
+    }
+}
+
+choices! {
+    /// Gaps between the bodies before anything moves.
+    pub enum InitialGap {
+        /// As the bodies are meshed or placed; where they overlap, they press.
+        Geometry = "geometry",
+        /// None at any point within reach: faces that fit, whose meshes do not.
+        Closed = "closed",
+    }
+}
+
+variants! {
+    /// How the counter-body moves past the body: along one direction, or about an axis.
+    #[derive(Copy)]
+    pub enum SlidingChoice by presence or "sliding_velocity" {
+        /// Along one direction.
+        Along "sliding_velocity" {
+            /// V \[m/s\] of the counter-body relative to the body along the sliding direction.
+            sliding_velocity: f64 = key::quantity(VELOCITY)
+                .check("a velocity that is not zero (steady sliding has no state at rest)", |v| *v != 0.0)
+                .invalidates(Invalidates::Equilibrium),
+            /// Direction in which the counter-body slides.
+            sliding_direction: [f64; 3] =
+                key::direction().or([1.0, 0.0, 0.0]).invalidates(Invalidates::Interface),
+        }
+        /// About an axis.
+        About "rotation" {
+            /// The counter-body turns about an axis: every point slides across its own radius, at its own speed.
+            rotation: ContactRotation =
+                key::table().required("a table such as { axis = [0, 0, 1], speed = \"600 rpm\" }"),
+        }
+    }
+}
+
+impl SlidingChoice {
+    /// The direction of sliding at every point.
+    pub fn way(&self) -> Sliding {
+        match self {
+            SlidingChoice::Along { sliding_direction, .. } => Sliding::Along(*sliding_direction),
+            SlidingChoice::About { rotation } => {
+                Sliding::About { axis: rotation.axis, point: rotation.point }
+            }
+        }
+    }
+
+    /// V \[m/s\] along one direction, Ω \[rad/s\] about an axis.
+    pub fn rate(&self) -> f64 {
+        match self {
+            SlidingChoice::Along { sliding_velocity, .. } => *sliding_velocity,
+            SlidingChoice::About { rotation } => rotation.speed,
+        }
+    }
+}
+
+declare! {
+    /// A counter-body that turns about an axis relative to the body: v = Ω × (x − x₀).
+    #[derive(Copy)]
+    pub struct ContactRotation {
+        /// Direction of the axis; the speed is right-handed about it.
+        pub axis: [f64; 3] = key::direction().invalidates(Invalidates::Interface),
+        /// x₀ \[m\], a point of the axis.
+        pub point: [f64; 3] = key::quantities(LENGTH).or([0.0; 3]).invalidates(Invalidates::Interface),
+        /// Ω \[rad/s\].
+        pub speed: f64 = key::quantity(ANGULAR_VELOCITY)
+            .check("a speed that is not zero (steady sliding has no state at rest)", |v| *v != 0.0)
+            .label("speed of rotation")
+            .invalidates(Invalidates::Equilibrium),
     }
 }
 

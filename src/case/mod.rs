@@ -32,8 +32,8 @@ mod varied;
 pub use analyses::{CeaAnalysis, ContactState, ModesAnalysis, SensitivityAnalysis};
 pub use calibrate::{CalibrateAnalysis, SQUEAL};
 pub use contact::{
-    BristleChoice, Contact, ContactPoints, Friction, FrictionCurve, Normal, Placement, Pressing, Sense,
-    StiffnessPer,
+    BristleChoice, Contact, ContactPoints, ContactRotation, Friction, FrictionCurve, InitialGap, Normal,
+    Placement, Pressing, Sense, SlidingChoice, StiffnessPer,
 };
 pub use explore::{MapAnalysis, SweepAnalysis};
 pub use expression::{Dual, evaluate};

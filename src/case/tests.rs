@@ -1,4 +1,5 @@
 use super::*;
+use crate::bounds::{Origin::*, within};
 use crate::contact::Exponential;
 use crate::schema::{Content, DescribedTable, describe, json_schema, key_reference};
 
@@ -135,6 +136,30 @@ fn every_number_of_a_case_is_a_parameter_with_unit_and_bounds() {
     let nu = one("material.steel.poissons_ratio");
     assert!(nu.invalidates == Invalidates::Structure && !nu.accepts(0.5) && nu.accepts(0.499));
     assert_eq!(one("modes.disc.measured.2").invalidates, Invalidates::Question);
+}
+
+/// A counter-body turns in place of sliding along a direction: its speed is a scalar, and what goes with a direction only is refused beside it.
+#[test]
+fn a_rotation_stands_in_place_of_a_sliding_velocity() {
+    let rotation = "rotation = { axis = [1, 0, 0], point = [0, \"5 mm\", 0], speed = \"-300 rpm\" }";
+    let turning = RIG.replace("sliding_velocity = \"0.1 m/s\"", rotation);
+    let case = parse(&turning).unwrap();
+    assert_eq!(parse(&case.to_toml()).unwrap(), case);
+    let speed = case.parameter("contact.rim.rotation.speed").unwrap();
+    assert_eq!(speed.unit, "rad/s");
+    assert!(within((speed.value + 10.0 * std::f64::consts::PI).abs(), 1e-13, RoundOff));
+    assert!(!speed.accepts(0.0));
+    let fault = |more: &str| parse(&turning.replace(rotation, more)).unwrap_err().to_string();
+    let both = fault(&format!("{rotation}\nsliding_velocity = 1"));
+    assert!(both.contains("both `sliding_velocity` and `rotation`"), "{both}");
+    let direction = fault(&format!("{rotation}\nsliding_direction = [1, 0, 0]"));
+    assert!(direction.contains("`contact.rim.sliding_direction`: found an unknown key"), "{direction}");
+    let stroke = fault(&format!("{rotation}\nstroke = 0.1"));
+    assert!(stroke.contains("keeps its place"), "{stroke}");
+    let still = fault("rotation = { axis = [1, 0, 0], speed = 0 }");
+    assert!(still.contains("`contact.rim.rotation.speed`") && still.contains("no state at rest"), "{still}");
+    let nothing = fault("");
+    assert!(nothing.contains("`contact.rim.sliding_velocity`"), "{nothing}");
 }
 
 #[test]

@@ -202,9 +202,9 @@ fn check_probe(probe: &Probe, report: &mut Report) {
 declare! {
     /// How a counter-body slides.
     pub struct Slide {
-        /// Its velocity, in parts of the contact's `sliding_velocity`.
+        /// Its velocity, in parts of the contact's `sliding_velocity` or of the speed of its `rotation`.
         pub course: Course = key::flat(),
-        /// Whether the contact runs over the mesh of the counter-body, or stays in its place.
+        /// Whether the contact runs over the mesh of the counter-body, or stays in its place, as one that turns by `rotation` always does.
         pub travels: bool = key::flag(true),
     }
 }

@@ -1,6 +1,7 @@
 //! Points that touch rigid ground.
 
 use super::Reduce;
+use super::sliding::Sliding;
 use crate::system::ContactPoint;
 use nalgebra::Vector3;
 
@@ -14,31 +15,33 @@ pub enum GroundFault {
 }
 
 /// Contact points of nodes at `coordinates` \[m\] against rigid ground, each with its weight: g along `into`, t₁ along the part of
-/// `sliding` that is across it, t₂ = g × t₁. Gaps are zero.
+/// the direction of sliding that is across it, t₂ = g × t₁. Gaps are zero.
 ///
 /// # Errors
 /// Directions of which these cannot be made.
 pub fn ground_points(
     nodes: &[(usize, f64)],
     coordinates: &[[f64; 3]],
-    [into, sliding]: [[f64; 3]; 2],
+    (into, sliding): ([f64; 3], Sliding),
     reduce: &Reduce<'_>,
 ) -> Result<Vec<ContactPoint>, GroundFault> {
     let g = Vector3::from(into).try_normalize(0.0).ok_or(GroundFault::NoDirection)?;
-    let sliding = Vector3::from(sliding);
-    let t1 = (sliding - sliding.dot(&g) * g)
-        .try_normalize(1e-6 * sliding.norm())
-        .ok_or(GroundFault::SlidesIntoTheGround)?;
-    let t2 = g.cross(&t1);
     let direction = |node: usize, d: &Vector3<f64>| reduce(&[(node, 0, d.x), (node, 1, d.y), (node, 2, d.z)]);
-    let point = |(node, weight): &(usize, f64)| ContactPoint {
-        position: coordinates[*node],
-        gap: 0.0,
-        weight: *weight,
-        normal: direction(*node, &g),
-        tangents: [direction(*node, &t1), direction(*node, &t2)],
+    let point = |(node, weight): &(usize, f64)| {
+        let position = coordinates[*node];
+        let (t1, speed) = sliding.tangent(g.into(), position).ok_or(GroundFault::SlidesIntoTheGround)?;
+        let t1 = Vector3::from(t1);
+        let t2 = g.cross(&t1);
+        Ok(ContactPoint {
+            position,
+            gap: 0.0,
+            weight: *weight,
+            speed,
+            normal: direction(*node, &g),
+            tangents: [direction(*node, &t1), direction(*node, &t2)],
+        })
     };
-    Ok(nodes.iter().map(point).collect())
+    nodes.iter().map(point).collect()
 }
 
 #[cfg(test)]
@@ -52,7 +55,9 @@ mod tests {
             SparseVector::from_entries(terms.iter().map(|(node, axis, v)| (3 * node + axis, *v)))
         };
         let coordinates = [[0.0; 3], [1.0, 2.0, 3.0]];
-        let of = |directions| ground_points(&[(1, 1.0)], &coordinates, directions, &reduce);
+        let of = |[into, along]: [[f64; 3]; 2]| {
+            ground_points(&[(1, 1.0)], &coordinates, (into, Sliding::Along(along)), &reduce)
+        };
         let points = of([[0.0, 0.0, -2.0], [3.0, 0.0, 4.0]]).unwrap();
         let expected = |values: &[(usize, f64)]| SparseVector::from_entries(values.iter().copied());
         assert_eq!(points[0].normal, expected(&[(5, -1.0)]));

@@ -6,7 +6,7 @@
 //! A [`SlidingLaw`] is a pure function (penetration, slip velocity) → (N, F₁, F₂) with its Jacobian;
 //! [`pair_surfaces`] builds the contact points of a pair from the meshes of its bodies. Together with a closing
 //! load they make a [`crate::system::ContactPair`]. [`ground_points`] are those of nodes on rigid ground, [`place`] sets a
-//! body on its counter-body, [`Stations`] are the points of a pair whose counter-body travels.
+//! body on its counter-body, [`Sliding`] is how that one moves, [`Stations`] are the points of a pair whose counter-body travels.
 
 mod bristle;
 mod coefficient;
@@ -18,8 +18,11 @@ pub mod normal;
 pub mod pairing;
 mod placement;
 mod projection;
+mod sliding;
 mod slip;
+mod surfaces;
 mod table;
+mod touching;
 mod travel;
 mod tributary;
 
@@ -29,8 +32,10 @@ pub use friction::{Coulomb, Exponential, FrictionCurve, Hyperbolic, Stribeck};
 pub use ground::{GroundFault, ground_points};
 pub use law::{FrictionSense, SlidingLaw};
 pub use normal::{NormalForce, NormalLaw};
-pub use pairing::{ContactPatch, ContactSide, Reduce, Surfaces, pair_surfaces};
+pub use pairing::{Reduce, pair_surfaces};
 pub use placement::{BodyPlacement, OffCounter, place};
+pub use sliding::Sliding;
+pub use surfaces::{ContactPatch, ContactSide, Surfaces};
 pub use table::FrictionTable;
 pub use travel::{Stations, mean_edge, travelled};
 pub use tributary::tributary;

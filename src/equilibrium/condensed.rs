@@ -114,7 +114,7 @@ fn spring(pair: &crate::system::ContactPair, point: &ContactPoint, k: &SparseMat
     let motion = ContactMotion {
         penetration: 1e-12,
         penetration_rate: 0.0,
-        slip_velocity: [pair.sliding_velocity, 0.0],
+        slip_velocity: [pair.velocity_at(point), 0.0],
     };
     let law = pair.law.respond(&motion, point.weight).1.by_penetration[0];
     match (law > 0.0, structure > 0.0) {

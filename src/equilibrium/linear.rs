@@ -114,7 +114,7 @@ pub fn contact_force(system: &System, approach: &[f64], displacement: &[f64], ve
             let motion = ContactMotion {
                 penetration: approach - point.gap + g.dot(displacement),
                 penetration_rate: g.dot(velocity),
-                slip_velocity: [pair.sliding_velocity - t1.dot(velocity), -t2.dot(velocity)],
+                slip_velocity: [pair.velocity_at(point) - t1.dot(velocity), -t2.dot(velocity)],
             };
             let (forces, _) = pair.law.respond(&motion, point.weight);
             g.add_to(forces.normal, &mut total);

@@ -133,7 +133,7 @@ impl<'a> PointLaws<'a> {
 /// The law of a point at a penetration, in steady sliding.
 pub(super) fn respond(pair: &ContactPair, point: &ContactPoint, penetration: f64) -> Law {
     let motion =
-        ContactMotion { penetration, penetration_rate: 0.0, slip_velocity: [pair.sliding_velocity, 0.0] };
+        ContactMotion { penetration, penetration_rate: 0.0, slip_velocity: [pair.velocity_at(point), 0.0] };
     pair.law.respond(&motion, point.weight)
 }
 

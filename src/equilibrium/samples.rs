@@ -39,7 +39,7 @@ pub(crate) fn point(
     t1: SparseVector,
     t2: SparseVector,
 ) -> ContactPoint {
-    ContactPoint { position: [0.0; 3], gap, weight, normal: g, tangents: [t1, t2] }
+    ContactPoint { position: [0.0; 3], gap, weight, speed: 1.0, normal: g, tangents: [t1, t2] }
 }
 
 pub(crate) fn pair(

@@ -4,18 +4,22 @@ use super::contact_twice::{points_twice, surfaces_twice, tied_and_in_contact};
 use super::counter::{CounterFaces, counter_faces};
 use super::imported::given_points;
 use super::regions::Regions;
-use crate::case::{Case, Contact, Pressing, StiffnessPer};
+use crate::case::{Case, Contact, InitialGap, Pressing, SlidingChoice, StiffnessPer};
+use crate::connected::lowest_connected;
 use crate::contact::{
-    Bristle, ContactPatch, ContactSide, GroundFault, NormalLaw, SlidingLaw, Surfaces, pair_surfaces,
-    tributary,
+    Bristle, ContactPatch, ContactSide, GroundFault, NormalLaw, Sliding, SlidingLaw, Surfaces, pair_surfaces,
+    travelled, tributary,
 };
 use crate::error::{Error, Fault, Faults, Result};
-use crate::mesh::{Cell, made_of};
-use crate::structure::{DofMap, Model};
+use crate::mesh::{Cell, cell_nodes, made_of};
+use crate::structure::{DofMap, Model, Part};
 use crate::system::{Closing, ContactPair, ContactPoint};
 use nalgebra::Vector3;
 use std::collections::BTreeSet;
 use std::sync::Arc;
+
+/// Faces whose area vectors add up to less than this share of their areas look no one way.
+const ONE_WAY: f64 = 0.5;
 
 /// Every contact pair of the case.
 ///
@@ -38,13 +42,14 @@ pub fn contact_pairs(
             faults.take(surface_points(name, contact, (regions, model, dofs), &Stand::first(contact)))
         };
         let law = faults.take(law(name, contact));
+        let points = points.and_then(|points| faults.take(by_mean_distance(name, contact, points)));
         if let (Some(points), Some(law)) = (points, law) {
             pairs.push(ContactPair {
                 name: name.clone(),
+                sliding_velocity: sliding_velocity(contact, &points),
                 points: points.into(),
                 law: Arc::new(law),
                 closing: closing(contact),
-                sliding_velocity: contact.sliding_velocity,
             });
         }
     }
@@ -64,11 +69,35 @@ pub fn with_laws(pairs: &[ContactPair], case: &Case) -> Result<Vec<ContactPair>>
         Ok(ContactPair {
             law: Arc::new(law(&pair.name, contact)?),
             closing: closing(contact),
-            sliding_velocity: contact.sliding_velocity,
+            sliding_velocity: sliding_velocity(contact, &pair.points),
             ..pair.clone()
         })
     };
     pairs.iter().map(of).collect()
+}
+
+/// V of a pair \[m/s\]: of a counter-body that turns, at the mean distance of the points from the axis.
+fn sliding_velocity(contact: &Contact, points: &[ContactPoint]) -> f64 {
+    contact.sliding.rate() * contact.sliding.way().mean_distance(points)
+}
+
+/// The points of a counter-body that turns with their speeds in parts of V, where they come with their distance from the axis.
+fn by_mean_distance(
+    name: &str,
+    contact: &Contact,
+    mut points: Vec<ContactPoint>,
+) -> Result<Vec<ContactPoint>> {
+    let mean = contact.sliding.way().mean_distance(&points);
+    if mean == 0.0 {
+        let fault = Fault::new(
+            format!("`contact.{name}.rotation.point`"),
+            "an axis through the only point",
+            "points beside the axis",
+        );
+        return Err(Error::input(fault));
+    }
+    points.iter_mut().for_each(|point| point.speed /= mean);
+    Ok(points)
 }
 
 fn closing(contact: &Contact) -> Closing {
@@ -124,13 +153,17 @@ fn ground_points(
         }
         per => return Err(unfit(name, per, natural)),
     };
-    let directions = [contact.into.unwrap_or_default(), contact.sliding_direction];
+    let directions = (contact.into.unwrap_or_default(), contact.sliding.way());
     crate::contact::ground_points(&weighted, &regions.mesh.nodes, directions, &|terms| dofs.reduce(terms))
         .map_err(|fault| {
             let (key, found, expected) = match fault {
                 GroundFault::NoDirection => ("into", "no direction", "a direction"),
                 GroundFault::SlidesIntoTheGround => {
-                    ("sliding_direction", "the direction into the ground", "a direction along the ground")
+                    let key = match contact.sliding {
+                        SlidingChoice::Along { .. } => "sliding_direction",
+                        SlidingChoice::About { .. } => "rotation.axis",
+                    };
+                    (key, "the direction into the ground", "a direction along the ground")
                 }
             };
             Error::input(Fault::new(format!("`contact.{name}.{key}`"), found, expected))
@@ -153,6 +186,35 @@ impl Stand {
     }
 }
 
+/// What makes the `nodes` of a body and the `faces` of its counter-body one body, and what to do: nodes that both have, or one piece of the same part
+/// that they are on.
+fn touches_itself(
+    regions: &Regions,
+    [body, counter]: [&Part; 2],
+    nodes: &[usize],
+    faces: &[Cell],
+) -> Option<(String, &'static str)> {
+    let of_counter = cell_nodes(faces);
+    let shared: Vec<usize> =
+        nodes.iter().copied().filter(|node| of_counter.binary_search(node).is_ok()).collect();
+    if let Some(first) = shared.first() {
+        let (count, all, name) = (shared.len(), nodes.len(), regions.name_of_node(*first));
+        let found = format!("has {count} of the {all} nodes of the body, the first {name}");
+        return Some((
+            found,
+            "Two plates that touch have nodes of their own, half of both thicknesses apart",
+        ));
+    }
+    if body.name != counter.name {
+        return None;
+    }
+    let piece = lowest_connected(regions.mesh.nodes.len(), body.cells.iter().map(Cell::nodes));
+    let own: BTreeSet<usize> = nodes.iter().map(|node| piece[*node]).collect();
+    let found = format!("hangs together with the body in `{}`", counter.name);
+    let connected = of_counter.iter().any(|node| own.contains(&piece[*node]));
+    connected.then_some((found, "Give both bodies meshes of their own, without common nodes"))
+}
+
 /// Points of a rim or a face against another body.
 pub fn surface_points(
     name: &str,
@@ -173,21 +235,18 @@ pub fn surface_points(
     })?;
     let CounterFaces { part: counter, faces } =
         counter_faces(&contact.counter, regions, model, (&place("counter"), ", or \"ground\""))?;
-    let own: BTreeSet<usize> = nodes.iter().copied().collect();
-    let shared = faces.iter().flat_map(Cell::nodes).filter(|node| own.contains(node));
-    let shared: BTreeSet<usize> = shared.copied().collect();
-    if let Some(first) = shared.first() {
-        let found = format!(
-            "\"{}\", which has {} of the {} nodes of the body, the first {}",
-            contact.counter,
-            shared.len(),
-            nodes.len(),
-            regions.name_of_node(*first)
-        );
+    if let Some((found, help)) = touches_itself(regions, [body, counter], &nodes, &faces) {
+        let found = format!("\"{}\", which {found}", contact.counter);
         let fault = Fault::new(place("counter"), found, "another body: none is in contact with itself");
-        let help = "Two plates that touch have nodes of their own, half of both thicknesses apart";
         return Err(Error::input(fault.with_help(help)));
     }
+    let touching = match region.dimension {
+        2 => body.outward(touching).ok_or_else(|| {
+            let found = format!("region \"{}\", some of whose faces are not on the skin", contact.body);
+            Error::input(Fault::new(place("body"), found, format!("faces on the skin of `{}`", body.name)))
+        })?,
+        _ => touching,
+    };
     let lines: Vec<[usize; 2]> = touching.iter().filter_map(Cell::ends).collect();
     let (side, natural) = match region.dimension {
         1 if body.as_shell().is_none() => {
@@ -210,8 +269,13 @@ pub fn surface_points(
         per if per == natural => ContactPatch::Reach(contact.reach),
         per => return Err(unfit(name, per, Some(natural))),
     };
-    let moved = (stand.travel != 0.0)
-        .then(|| crate::contact::travelled(&model.nodes, &faces, contact.sliding_direction, stand.travel));
+    let way = contact.sliding.way();
+    let moved = match way {
+        Sliding::Along(direction) if stand.travel != 0.0 => {
+            Some(travelled(&model.nodes, &faces, direction, stand.travel))
+        }
+        _ => None,
+    };
     let surfaces = Surfaces {
         name,
         nodes: moved.as_ref().unwrap_or(&model.nodes),
@@ -219,27 +283,35 @@ pub fn surface_points(
         side,
         counter,
         faces: &faces,
-        sliding_direction: contact.sliding_direction,
+        sliding: way,
         patch,
         stroke: contact.stroke,
     };
     let mut points = pair_surfaces(&surfaces, &|terms| dofs.reduce(terms))?;
     let touch = stand.touch.unwrap_or_else(|| points.iter().map(|p| p.gap).fold(f64::INFINITY, f64::min));
-    points.iter_mut().for_each(|p| p.gap -= touch);
+    points.iter_mut().for_each(|p| match contact.initial_gap {
+        InitialGap::Geometry => p.gap -= touch,
+        InitialGap::Closed => p.gap = 0.0,
+    });
     Ok(points)
 }
 
-/// Two unit vectors of a pair, for pictures: where the load presses the body, and where the counter-body moves.
+/// Two unit vectors of a pair, for pictures: where the load presses the body, and where the counter-body moves; zero where it has no one such
+/// direction, as a shaft in a bore.
 pub fn arrows(contact: &Contact, regions: &Regions, model: &Model, points: &[ContactPoint]) -> [[f64; 3]; 2] {
-    let sliding = Vector3::from(contact.sliding_direction) * contact.sliding_velocity;
+    let weight: f64 = points.iter().map(|p| p.weight).sum();
+    let middle = points.iter().map(|p| p.weight / weight * Vector3::from(p.position)).sum::<Vector3<f64>>();
+    let sliding = Vector3::from(contact.sliding.way().at(middle.into())) * contact.sliding.rate();
     let press = match (contact.into, counter_faces(&contact.counter, regions, model, ("", "")).ok()) {
         (Some(into), _) => Vector3::from(into),
-        (None, Some(CounterFaces { faces, .. })) => faces.first().map_or(Vector3::zeros(), |face| {
-            let at = |k: usize| Vector3::from(model.nodes[face.nodes()[k]]);
-            let normal = (at(1) - at(0)).cross(&(at(2) - at(0)));
-            let above: f64 = points.iter().map(|p| (Vector3::from(p.position) - at(0)).dot(&normal)).sum();
-            -above.signum() * normal
-        }),
+        (None, Some(CounterFaces { faces, .. })) => {
+            let at = |face: &Cell, k: usize| Vector3::from(model.nodes[face.corners()[k]]);
+            let normal = |face: &Cell| (at(face, 1) - at(face, 0)).cross(&(at(face, 2) - at(face, 0)));
+            let sum = faces.iter().map(normal).sum::<Vector3<f64>>();
+            let whole: f64 = faces.iter().map(|face| normal(face).norm()).sum();
+            let above = faces.first().map_or(0.0, |face| (middle - at(face, 0)).dot(&sum));
+            if sum.norm() > ONE_WAY * whole { -above.signum() * sum } else { Vector3::zeros() }
+        }
         (None, None) => Vector3::zeros(),
     };
     [press, sliding].map(|v| v.try_normalize(0.0).unwrap_or_default().into())

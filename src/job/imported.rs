@@ -318,7 +318,14 @@ pub fn given_points(
                     directions(&place, [cell(0), cell(1), cell(2)], n, &mut faults)
                 {
                     let tangents = [t1, t2];
-                    found.push(ContactPoint { position: [0.0; 3], gap: 0.0, weight: 1.0, normal, tangents });
+                    found.push(ContactPoint {
+                        position: [0.0; 3],
+                        gap: 0.0,
+                        weight: 1.0,
+                        speed: 1.0,
+                        normal,
+                        tangents,
+                    });
                 }
             }
         }
@@ -359,7 +366,7 @@ fn points_of(table: &TextTable, n: usize) -> Result<Vec<ContactPoint>> {
         let gap = row.number("gap", 0.0, &mut faults);
         let position = ["x", "y", "z"].map(|c| row.number(c, 0.0, &mut faults));
         if let Some([normal, t1, t2]) = directions(&place, cells, n, &mut faults) {
-            found.push(ContactPoint { position, gap, weight, normal, tangents: [t1, t2] });
+            found.push(ContactPoint { position, gap, weight, speed: 1.0, normal, tangents: [t1, t2] });
         }
     }
     if found.is_empty() && faults.0.is_empty() {

@@ -30,7 +30,7 @@ fn nothing_touches(prepared: &Prepared, faults: &mut Faults) {
     for pair in &system.pairs {
         let Closing::Approach(approach) = pair.closing else { return };
         let closed = pair.points.iter().any(|point| {
-            let slip_velocity = [pair.sliding_velocity, 0.0];
+            let slip_velocity = [pair.velocity_at(point), 0.0];
             let penetration = approach - point.gap;
             let motion = ContactMotion { penetration, penetration_rate: 0.0, slip_velocity };
             pair.law.respond(&motion, point.weight).0.normal != 0.0

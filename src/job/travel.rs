@@ -4,7 +4,7 @@ use super::contacts::{Stand, surface_points};
 use super::counter::counter_faces;
 use super::prepared::Prepared;
 use super::time_function::profile;
-use crate::case::{Contact, TransientAnalysis};
+use crate::case::{Contact, SlidingChoice, TransientAnalysis};
 use crate::contact::{Stations, mean_edge};
 use crate::error::{Error, Fault, Faults, Result};
 use crate::system::ContactPoint;
@@ -20,12 +20,14 @@ pub fn tracks(prepared: &Prepared<'_>, wanted: &TransientAnalysis) -> Result<Vec
     let tracks = pairs.map(|pair| {
         let contact = &prepared.case.contact[&pair.name];
         let slides = wanted.slide.get(&pair.name).is_some_and(|slide| slide.travels);
-        if !slides || contact.points.is_some() || contact.counter == "ground" {
+        // A counter-body that turns keeps its place.
+        let turns = matches!(contact.sliding, SlidingChoice::About { .. });
+        if !slides || turns || contact.points.is_some() || contact.counter == "ground" {
             return None;
         }
         let course = wanted.slide.get(&pair.name).map(|slide| &slide.course);
         let factors = profile(course).reach(wanted.duration);
-        let way = factors.map(|factor| factor * contact.sliding_velocity);
+        let way = factors.map(|factor| factor * pair.sliding_velocity);
         let way = [way[0].min(way[1]), way[0].max(way[1])];
         faults.take(track(prepared, &pair.name, contact, &pair.points, way))
     });

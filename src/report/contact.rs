@@ -93,9 +93,10 @@ fn width(points: &[PlacedPoint], direction: ViewVector) -> f64 {
 
 /// The points of a pair near its closed ones: the far side of a rim, for one, says nothing.
 fn near_closed<'a>(steady: &'a SteadyResult, pair: &str) -> Vec<PlacedPoint<'a>> {
-    let all = steady.points.iter().zip(&steady.state.points).zip(&steady.areas);
+    let all = steady.points.iter().zip(&steady.state.points).zip(steady.pressures());
     let of_pair = all.filter(|(((name, _), _), _)| name == pair);
-    let all: Vec<PlacedPoint> = of_pair.map(|(((_, place), state), area)| (*place, state, *area)).collect();
+    let all: Vec<PlacedPoint> =
+        of_pair.map(|(((_, place), state), pressure)| (*place, state, pressure)).collect();
     let reach = AXES.iter().map(|(direction, _)| width(&all, *direction)).fold(1e-3, f64::max);
     let near = |place: ViewVector| {
         AXES.iter().all(|(direction, _)| {

@@ -22,7 +22,7 @@ const RADII: [f64; 2] = [13.0, 4.0];
 /// A contact point: place on the two axes \[mm\], its state, and its pressure \[MPa\] or normal force \[N\].
 type FacePoint<'a> = ([f64; 2], &'a PointState, f64);
 
-/// A contact point at a place, with the area that it stands for \[m²\].
+/// A contact point at a place, with its pressure \[Pa\].
 pub(super) type PlacedPoint<'a> = (ViewVector, &'a PointState, Option<f64>);
 
 /// What colours and sizes show.
@@ -52,15 +52,14 @@ pub(super) fn picture(steady: &SteadyResult, pair: &str, near: &[PlacedPoint]) -
     // Along an axis of the mesh places are those of the mesh.
     let (names, [along, across], to_the_right) = axes(along, across);
     let at = |place: ViewVector| [1e3 * dot(place, along), 1e3 * dot(place, across)];
-    // Force over area, where every point has one.
-    let areas: Option<Vec<f64>> = near.iter().map(|(.., area)| area.filter(|area| *area > 0.0)).collect();
-    let shown = if areas.is_some() { PRESSURE } else { FORCE };
-    let value = |k: usize, force: f64| areas.as_ref().map_or(force, |areas| 1e-6 * force / areas[k]);
-    let points: Vec<FacePoint> = near
-        .iter()
-        .enumerate()
-        .map(|(k, (place, state, _))| (at(*place), *state, value(k, state.forces.normal)))
-        .collect();
+    // Pressure, where every point has one.
+    let shown = if near.iter().all(|(.., pressure)| pressure.is_some()) { PRESSURE } else { FORCE };
+    let value = |state: &PointState, pressure: Option<f64>| match pressure {
+        Some(pressure) if shown.unit == PRESSURE.unit => 1e-6 * pressure,
+        _ => state.forces.normal,
+    };
+    let points: Vec<FacePoint> =
+        near.iter().map(|(place, state, pressure)| (at(*place), *state, value(state, *pressure))).collect();
     let extents = [0, 1].map(|c| {
         let [low, high] = span(&points, c);
         high - low
@@ -164,8 +163,8 @@ mod tests {
         let mut results = sample::rig();
         let steady = results.get_mut::<SteadyResult>().unwrap();
         let seen = |steady: &SteadyResult| {
-            let places = steady.points.iter().zip(&steady.state.points).zip(&steady.areas);
-            let points = places.map(|(((_, place), state), area)| (*place, state, *area));
+            let places = steady.points.iter().zip(&steady.state.points).zip(steady.pressures());
+            let points = places.map(|(((_, place), state), pressure)| (*place, state, pressure));
             picture(steady, "rim", &points.collect::<Vec<_>>())
         };
         assert!(seen(steady).is_none(), "two edges");
@@ -193,8 +192,8 @@ mod tests {
             for (state, area) in steady.state.points.iter_mut().zip(&steady.areas) {
                 state.forces.normal = 0.25e6 * area.unwrap();
             }
-            let places = steady.points.iter().zip(&steady.state.points).zip(&steady.areas);
-            let points = places.map(|(((_, place), state), area)| (*place, state, *area));
+            let places = steady.points.iter().zip(&steady.state.points).zip(steady.pressures());
+            let points = places.map(|(((_, place), state), pressure)| (*place, state, pressure));
             let seen = picture(steady, "rim", &points.collect::<Vec<_>>()).unwrap();
             assert!(
                 seen.svg.contains("pressure [MPa]") && seen.caption.contains("its pressure"),

@@ -32,8 +32,13 @@ fn pair_columns<'a>() -> Vec<Column<PairTotals<'a>>> {
         column("name", "text", "name of the pair", |p: &Pair| p.name.to_string())
             .shown("pair", |p| p.name.to_string()),
         column("load_n", "N", "load", |p: &Pair| p.load).shown("load [N]", |p| given(p.load)),
-        column("sliding_velocity_m_per_s", "m/s", "sliding velocity V", |p: &Pair| p.sliding_velocity)
-            .shown("V [m/s]", |p| given(p.sliding_velocity)),
+        column(
+            "sliding_velocity_m_per_s",
+            "m/s",
+            "sliding velocity V, of a counter-body that turns at the mean radius",
+            |p: &Pair| p.sliding_velocity,
+        )
+        .shown("V [m/s]", |p| given(p.sliding_velocity)),
         column("normal_force_n", "N", "ΣN, positive in compression", |p: &Pair| p.normal_force)
             .shown("ΣN [N]", |p| significant(p.normal_force, 4)),
         column("friction_force_n", "N", sum, |p: &Pair| p.friction_force)
@@ -45,18 +50,22 @@ fn pair_columns<'a>() -> Vec<Column<PairTotals<'a>>> {
             .shown("open", |p| p.open.to_string()),
         column("largest_penetration_m", "m", "largest δ", |p: &Pair| p.largest_penetration)
             .shown("deepest [µm]", move |p| micrometres(p.largest_penetration)),
+        column("largest_pressure_pa", "Pa", "largest p = N/A, of points that stand for areas", |p: &Pair| {
+            p.largest_pressure
+        })
+        .shown("p max [MPa]", |p| p.largest_pressure.map_or("–".into(), |p| significant(1e-6 * p, 3))),
         column("approach_m", "m", "approach of body and counter-body", |p: &Pair| p.approach)
             .shown("approach [µm]", move |p| micrometres(p.approach)),
     ]
 }
 
-/// The pair, the position and the state of a contact point.
-type ContactPointRow<'a> = (&'a str, [f64; 3], &'a PointState);
+/// The pair, the position, the pressure and the state of a contact point.
+type ContactPointRow<'a> = (&'a str, [f64; 3], Option<f64>, &'a PointState);
 
 fn point_columns<'a>() -> Vec<Column<ContactPointRow<'a>>> {
     vec![
         column("pair", "text", "name of the pair", |(pair, ..): &ContactPointRow| (*pair).to_string()),
-        column("position_m", "m", "position", |(_, position, _): &ContactPointRow| *position)
+        column("position_m", "m", "position", |(_, position, ..): &ContactPointRow| *position)
             .along(Dimension::axes()),
         column("penetration_m", "m", "δ, negative when open", |(.., state): &ContactPointRow| {
             state.penetration
@@ -64,6 +73,12 @@ fn point_columns<'a>() -> Vec<Column<ContactPointRow<'a>>> {
         column("normal_force_n", "N", "N, positive in compression", |(.., state): &ContactPointRow| {
             state.forces.normal
         }),
+        column(
+            "pressure_pa",
+            "Pa",
+            "p = N/A, of a point that stands for an area",
+            |(_, _, p, _): &ContactPointRow| *p,
+        ),
         column(
             "friction_force_n",
             "N",
@@ -84,9 +99,9 @@ fn directions() -> Dimension {
 
 impl Describe for SteadyResult {
     fn describe(&self) -> Group<'_> {
-        let places = self.points.iter().zip(&self.state.points);
+        let places = self.points.iter().zip(&self.state.points).zip(self.pressures());
         let points: Vec<ContactPointRow> =
-            places.map(|((pair, position), state)| (&**pair, *position, state)).collect();
+            places.map(|(((pair, position), state), p)| (&**pair, *position, p, state)).collect();
         let mut points =
             Table::of("points", "point", &point_columns(), &points).file("contact_points").long();
         let rows = points.rows.clone();
@@ -162,9 +177,20 @@ pub struct PairTotals<'a> {
     pub open: usize,
     /// Largest δ \[m\] of the closed points.
     pub largest_penetration: Option<f64>,
+    /// Largest p \[Pa\] of the closed points.
+    pub largest_pressure: Option<f64>,
 }
 
 impl SteadyResult {
+    /// p = N/A \[Pa\] of every contact point; `None` where its stiffness is not one per area.
+    pub fn pressures(&self) -> impl Iterator<Item = Option<f64>> + '_ {
+        self.state
+            .points
+            .iter()
+            .zip(&self.areas)
+            .map(|(state, area)| area.filter(|area| *area > 0.0).map(|area| state.forces.normal / area))
+    }
+
     /// The sums over each pair, in the order of [`SteadyResult::pairs`].
     pub fn totals(&self) -> Vec<PairTotals<'_>> {
         self.pairs.iter().enumerate().map(|(k, pair)| self.pair_totals(k, pair)).collect()
@@ -185,8 +211,10 @@ impl SteadyResult {
             closed: 0,
             open: 0,
             largest_penetration: None,
+            largest_pressure: None,
         };
-        for (_, state) in self.points.iter().zip(&self.state.points).filter(|((pair, _), _)| pair == name) {
+        let points = self.points.iter().zip(&self.state.points).zip(self.pressures());
+        for ((_, state), pressure) in points.filter(|(((pair, _), _), _)| pair == name) {
             totals.normal_force += state.forces.normal;
             totals.friction_force[0] += state.forces.friction[0];
             totals.friction_force[1] += state.forces.friction[1];
@@ -194,6 +222,8 @@ impl SteadyResult {
                 totals.closed += 1;
                 let largest = totals.largest_penetration.unwrap_or(state.penetration);
                 totals.largest_penetration = Some(largest.max(state.penetration));
+                let largest = totals.largest_pressure;
+                totals.largest_pressure = pressure.map(|p| largest.map_or(p, |largest| largest.max(p)));
             } else {
                 totals.open += 1;
             }

@@ -41,7 +41,7 @@ pub use elements::waves::{thickness_error, thickness_shear_frequency};
 pub use free::{FreePart, free_parts, is_free_along, unresisted_parts};
 pub use material::{Material, Orthotropic, RayleighDamping};
 pub use model::{Constraint, Coupling, InclinedSupport, Model, RigidLink, Support};
-pub use part::{Part, PartKind};
+pub use part::{Moved, Part, PartKind};
 pub use properties::{
     Bar, Integration, PlateTheory, PointMass, Rotation, RotationAxis, Shell, Solid, Spring,
 };

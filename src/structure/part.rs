@@ -4,7 +4,7 @@
 
 use super::elements::{
     BarElement, FacePoint, FiniteElement, FlatTriangle, KirchhoffTriangle, MindlinQuadrilateral,
-    MindlinTriangle, SolidElement, split_face,
+    MindlinTriangle, SolidElement, on_triangles, split_face,
 };
 use super::material::Material;
 use super::properties::{Bar, PlateTheory, Shell, Solid};
@@ -13,6 +13,8 @@ use crate::schema::dotted;
 
 /// An element of any kind.
 pub(super) type AnyElement<'a> = Box<dyn FiniteElement + 'a>;
+/// A component of a node, and the (ux, uy, uz, rx, ry, rz) that a point has for a unit of it.
+pub type Moved = (usize, usize, [f64; 6]);
 /// Elements in a fixed order.
 pub(super) type Elements<'a> = Vec<AnyElement<'a>>;
 
@@ -176,24 +178,29 @@ impl Part {
         self.elements_on(self.cells.first()?, nodes).into_iter().next()
     }
 
-    /// The displacement of a point of `face`, a cell of a shell or a face of a solid, on nodes with the given coordinates: for each node that
-    /// it depends on, the (ux, uy, uz, rx, ry, rz) of the point for a unit of each component of the node's. Of a solid it is linear on the
-    /// triangle of the point, which meets rigid motions exactly.
-    pub fn displacement_at(
-        &self,
-        nodes: &[[f64; 3]],
-        face: &Cell,
-        at: &FacePoint,
-    ) -> Vec<(usize, usize, [f64; 6])> {
+    /// The displacement of the point of `face`, a cell of a shell or a face of a solid, at the reference coordinates `at`, on nodes with the given
+    /// coordinates: for each node that it depends on, the (ux, uy, uz, rx, ry, rz) of the point for a unit of each component of the node's. Of a
+    /// solid it is Σ N_k(ξ) u_k, without rotation; of a shell that of its mid-surface, by its elements.
+    pub fn displacement_at(&self, nodes: &[[f64; 3]], face: &Cell, at: [f64; 3]) -> Vec<Moved> {
         if self.kind.dimension() == 3 {
             let along = |component: usize, share: f64| {
                 std::array::from_fn(|k| if k == component { share } else { 0.0 })
             };
-            let shares = at.corners.into_iter().zip(at.barycentric);
+            let shares = face.nodes().iter().zip(face.kind().shape_functions(at));
             return shares
-                .flat_map(|(node, share)| (0..3).map(move |c| (node, c, along(c, share))))
+                .flat_map(|(node, share)| (0..3).map(move |c| (*node, c, along(c, share))))
                 .collect();
         }
+        let places = on_triangles(nodes, face, face.position(nodes, at));
+        let shared = |(at, share): (FacePoint, f64)| {
+            let moved = self.displacement_on(nodes, face, &at);
+            moved.into_iter().map(move |(node, component, by)| (node, component, by.map(|b| share * b)))
+        };
+        places.into_iter().flat_map(shared).collect()
+    }
+
+    /// The same on one of the triangles of a cell of a shell.
+    pub fn displacement_on(&self, nodes: &[[f64; 3]], face: &Cell, at: &FacePoint) -> Vec<Moved> {
         let elements = self.elements_on(face, nodes);
         let of = |element: &AnyElement| {
             let columns = element.displacement_at(at)?;

@@ -16,7 +16,7 @@
 //!   m × (u₊ − u₋)/h, and the one about m that of the face, the mean of θ̄ at both;
 //! * the edge of a shell on a shell: u_s and all of θ_s = θ̄.
 
-use super::elements::{FacePoint, FlatTriangle, split_face};
+use super::elements::{FacePoint, FlatTriangle, on_triangles, split_face};
 use super::model::Constraint;
 use super::part::Part;
 use super::properties::PlateTheory;
@@ -274,16 +274,9 @@ impl Master<'_> {
     fn on_shell(&self, foot: &LocatedPoint) -> Motion {
         let cell = &self.tie.faces[foot.face];
         let mut motion = Motion::default();
-        let triangles: Vec<[usize; 3]> = split_face(cell).iter().map(|triangle| triangle.nodes).collect();
-        // Of each splitting of a quadrilateral the triangle that the foot is on.
-        let splittings = triangles.chunks(2);
-        let share = 1.0 / splittings.len().max(1) as f64;
-        for splitting in splittings {
-            let points = splitting.iter().map(|corners| self.on_triangle(*corners, foot.position));
-            let least = |point: &FacePoint| point.barycentric.iter().fold(f64::INFINITY, |m, b| m.min(*b));
-            let Some(at) = points.max_by(|a, b| least(a).total_cmp(&least(b))) else { continue };
+        for (at, share) in on_triangles(self.tie.nodes, cell, foot.position) {
             let mut own = Motion::default();
-            for (node, component, by) in self.tie.master.displacement_at(self.tie.nodes, cell, &at) {
+            for (node, component, by) in self.tie.master.displacement_on(self.tie.nodes, cell, &at) {
                 (0..6).for_each(|k| add(&mut own[k], by[k], &one(node, component)));
             }
             self.turn_linearly_about_sides(&at, &mut own);
@@ -309,14 +302,6 @@ impl Master<'_> {
             add(&mut change, -side[k], &motion[3 + k]);
         }
         (0..3).for_each(|k| add(&mut motion[3 + k], side[k], &change));
-    }
-
-    /// A place near a triangle by its barycentric coordinates.
-    fn on_triangle(&self, corners: [usize; 3], x: [f64; 3]) -> FacePoint {
-        let [a, b, c] = corners.map(|node| Vector3::from(self.tie.nodes[node]) - Vector3::from(x));
-        let area = (b - a).cross(&(c - a));
-        let part = |p: Vector3<f64>, q: Vector3<f64>| p.cross(&q).dot(&area) / area.norm_squared();
-        FacePoint { corners, barycentric: [part(b, c), part(c, a), part(a, b)] }
     }
 }
 

@@ -15,11 +15,17 @@ pub struct ContactPair {
     pub law: Arc<dyn ContactLaw>,
     /// Closing condition: normal load or approach.
     pub closing: Closing,
-    /// V \[m/s\]: velocity of the counter-body relative to the body along t₁, without vibration.
+    /// V \[m/s\]: velocity of the counter-body relative to the body along t₁, without vibration; of one that turns, at the mean distance of
+    /// the points from the axis.
     pub sliding_velocity: f64,
 }
 
 impl ContactPair {
+    /// The velocity of the counter-body relative to the body at one of the pair's points, along its t₁ \[m/s\].
+    pub fn velocity_at(&self, point: &ContactPoint) -> f64 {
+        self.sliding_velocity * point.speed
+    }
+
     /// Whether its points also pull, so that they never open and touch without a load, too.
     pub fn is_bilateral(&self) -> bool {
         let motion = ContactMotion { penetration: -1.0, penetration_rate: 0.0, slip_velocity: [0.0; 2] };
@@ -36,6 +42,8 @@ pub struct ContactPoint {
     pub gap: f64,
     /// Contact length \[m\] or area \[m²\] it stands for, or its share of one.
     pub weight: f64,
+    /// How fast the counter-body slides here, in parts of the pair's V: 1, but for one that turns.
+    pub speed: f64,
     /// g: closes the contact (grows the penetration) when u moves along it.
     pub normal: SparseVector,
     /// t₁ (along the sliding direction) and t₂ (across): displacement of the body relative to the counter-body.

@@ -113,7 +113,8 @@ impl Work {
             match (model.points.get(d / 3), d % 3) {
                 (Some(_), 0) => work.normal -= mean,
                 (Some(point), 1) => {
-                    let slid = to.interface.travel[point.pair] - from.interface.travel[point.pair];
+                    let travel = [to, from].map(|state| state.interface.travel[point.pair]);
+                    let slid = point.speed * (travel[0] - travel[1]);
                     work.drive -= 0.5 * slid * (old + new);
                     work.heat -= 0.5 * slid * (old + new) - mean;
                 }

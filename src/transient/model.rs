@@ -64,6 +64,8 @@ pub(super) struct Touch<'a> {
     pub(super) position: [f64; 3],
     pub(super) law: &'a dyn ContactLaw,
     pub(super) weight: f64,
+    /// Its sliding velocity in parts of that of the pair.
+    pub(super) speed: f64,
     /// Its gap where it does not travel \[m\].
     pub(super) gap: f64,
 }
@@ -85,6 +87,7 @@ impl<'a> TransientModel<'a> {
                     position: point.position,
                     law: &*pair.law,
                     weight: point.weight,
+                    speed: point.speed,
                     gap: point.gap,
                 })
             })
@@ -150,7 +153,7 @@ impl<'a> TransientModel<'a> {
     /// What a contact point answers that slips at a part of the sliding velocity.
     fn respond(&self, point: usize, penetration: f64, part: f64) -> (ContactForces, ContactTangent) {
         let touch = &self.points[point];
-        let slip_velocity = [part * self.velocities[touch.pair], 0.0];
+        let slip_velocity = [part * touch.speed * self.velocities[touch.pair], 0.0];
         touch.law.respond(&ContactMotion { penetration, penetration_rate: 0.0, slip_velocity }, touch.weight)
     }
 

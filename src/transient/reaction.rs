@@ -116,11 +116,11 @@ impl Reaction {
             let motion = ContactMotion {
                 penetration: self.approaches[point.pair] - to.interface.gaps[p] + q[at],
                 penetration_rate: rate[at] + approaching(&self.approaches, point.pair, since),
-                slip_velocity: [to.speeds[point.pair] - rate[at + 1], -rate[at + 2]],
+                slip_velocity: [point.speed * to.speeds[point.pair] - rate[at + 1], -rate[at + 2]],
             };
             let answer = match since {
                 Some(Since { travel: before, bristles, duration, force, resistance, .. }) => {
-                    let travel = to.interface.travel[point.pair] - before[point.pair];
+                    let travel = point.speed * (to.interface.travel[point.pair] - before[point.pair]);
                     let moved = [1, 2].map(|c| q[at + c] - to.before[(at + c, 0)]);
                     let since = SlipStep {
                         bristle: bristles[p].bent,
@@ -183,7 +183,7 @@ impl Reaction {
                 let motion = ContactMotion {
                     penetration: approach - to.interface.gaps[p] + q[3 * p],
                     penetration_rate: rate[3 * p] + per_step * (approach - before),
-                    slip_velocity: [to.speeds[pair], 0.0],
+                    slip_velocity: [model.points[p].speed * to.speeds[pair], 0.0],
                 };
                 let (forces, tangent) = model.points[p].law.respond(&motion, model.points[p].weight);
                 (forces.normal, tangent.by_penetration[0], tangent.by_penetration_rate[0])

@@ -164,7 +164,8 @@ impl State {
     /// The slip velocity of a contact point along t₁ and t₂ \[m/s\].
     pub fn slip_velocity(&self, model: &TransientModel<'_>, point: usize) -> [f64; 2] {
         let at = 3 * point;
-        [self.speeds[model.points[point].pair] - self.along[(at + 1, 1)], -self.along[(at + 2, 1)]]
+        let of = &model.points[point];
+        [of.speed * self.speeds[of.pair] - self.along[(at + 1, 1)], -self.along[(at + 2, 1)]]
     }
 
     /// ½vᵀMv + ½uᵀKu \[J\].

@@ -54,7 +54,7 @@ impl TwoDof {
             contact: [contact.normal.stiffness, contact.normal.cubic],
             unilateral: contact.normal.unilateral,
             friction,
-            velocity: contact.sliding_velocity,
+            velocity: contact.sliding.rate(),
             regularisation: contact.friction.regularisation,
             printed: contact.friction.sense == Sense::AgainstSliding,
             load: case.force.get("press")?.force[1],

@@ -11,6 +11,7 @@ mod bounds;
 mod circles;
 mod closed_forms;
 mod constraints;
+mod contact;
 mod curved;
 mod elements;
 mod joined;

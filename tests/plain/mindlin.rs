@@ -175,7 +175,7 @@ fn interpolation_meets_rigid_motions_and_constant_curvature() {
     for (face, element) in faces.iter().enumerate() {
         let corners: [usize; 3] = std::array::from_fn(|k| element.nodes()[k + element.nodes().len() - 3]);
         let at = FacePoint { corners, barycentric: l };
-        let moved = part.displacement_at(&nodes, &faces[face], &at);
+        let moved = part.displacement_on(&nodes, &faces[face], &at);
         let found = |u: &dyn Fn(usize) -> [f64; 6]| {
             moved.iter().fold([0.0; 6], |sum, (node, component, by)| {
                 std::array::from_fn(|i| sum[i] + by[i] * u(*node)[*component])

@@ -96,6 +96,26 @@ impl Cell {
         })
     }
 
+    /// x(ξ) = Σ N_k(ξ) x_k \[m\] of nodes with the given coordinates.
+    pub fn position(&self, nodes: &[[f64; 3]], at: [f64; 3]) -> [f64; 3] {
+        let mut position = [0.0; 3];
+        for (node, share) in self.nodes().iter().zip(self.kind.shape_functions(at)) {
+            (0..3).for_each(|k| position[k] += share * nodes[*node][k]);
+        }
+        position
+    }
+
+    /// ∂x/∂ξ, ∂x/∂η, ∂x/∂ζ of nodes with the given coordinates \[m\]; those beyond its dimension are zero.
+    pub fn tangents(&self, nodes: &[[f64; 3]], at: [f64; 3]) -> [[f64; 3]; 3] {
+        let mut tangents = [[0.0; 3]; 3];
+        for (node, gradient) in self.nodes().iter().zip(self.kind.shape_gradients(at)) {
+            for (tangent, slope) in tangents.iter_mut().zip(gradient) {
+                (0..3).for_each(|k| tangent[k] += slope * nodes[*node][k]);
+            }
+        }
+        tangents
+    }
+
     /// Its nodes in the order of VTK files.
     pub fn to_vtk(&self) -> Vec<usize> {
         self.kind.table().vtk.order.to_file(self.nodes())

@@ -17,7 +17,7 @@ pub(super) fn keeps_orientation(mesh: &Mesh, cell: &Cell) -> bool {
     let corners = kind.corners();
     let centre: [f64; 3] =
         std::array::from_fn(|k| corners.iter().map(|c| c[k]).sum::<f64>() / corners.len() as f64);
-    let tangents = |at: [f64; 3]| tangents(mesh, cell, at);
+    let tangents = |at: [f64; 3]| cell.tangents(&mesh.nodes, at);
     let size = |at: [f64; 3], middle: &[[f64; 3]; 3]| {
         let [a, b, c] = tangents(at);
         match kind.dimension() {
@@ -37,7 +37,7 @@ pub(super) fn keeps_orientation(mesh: &Mesh, cell: &Cell) -> bool {
 pub(super) fn measure(mesh: &Mesh, cell: &Cell) -> f64 {
     let kind = cell.kind();
     let size = |at: [f64; 3]| {
-        let [a, b, c] = tangents(mesh, cell, at);
+        let [a, b, c] = cell.tangents(&mesh.nodes, at);
         match kind.dimension() {
             3 => dot(cross(a, b), c),
             2 => norm(cross(a, b)),
@@ -45,17 +45,6 @@ pub(super) fn measure(mesh: &Mesh, cell: &Cell) -> f64 {
         }
     };
     kind.quadrature(5).into_iter().map(|point| point.weight * size(point.at)).sum()
-}
-
-/// ∂x/∂ξ, ∂x/∂η, ∂x/∂ζ.
-fn tangents(mesh: &Mesh, cell: &Cell, at: [f64; 3]) -> [[f64; 3]; 3] {
-    let mut tangents = [[0.0; 3]; 3];
-    for (node, gradient) in cell.nodes().iter().zip(cell.kind().shape_gradients(at)) {
-        for (tangent, slope) in tangents.iter_mut().zip(gradient) {
-            (0..3).for_each(|c| tangent[c] += slope * mesh.nodes[*node][c]);
-        }
-    }
-    tangents
 }
 
 #[cfg(test)]

@@ -134,24 +134,14 @@ impl<'a> FaceTree<'a> {
 
     /// The point of a face at reference coordinates.
     fn point(&self, face: usize, at: [f64; 3], x: [f64; 3]) -> LocatedPoint {
-        let cell = &self.faces[face];
-        let mut position = [0.0; 3];
-        for (node, share) in cell.nodes().iter().zip(cell.kind().shape_functions(at)) {
-            (0..3).for_each(|k| position[k] += share * self.nodes[*node][k]);
-        }
+        let position = self.faces[face].position(self.nodes, at);
         LocatedPoint { face, at, position, distance: norm(minus(x, position)) }
     }
 
     /// ∂x/∂ξ and ∂x/∂η of a face.
     pub fn tangents(&self, face: usize, at: [f64; 3]) -> [[f64; 3]; 2] {
-        let cell = &self.faces[face];
-        let mut tangents = [[0.0; 3]; 2];
-        for (node, gradient) in cell.nodes().iter().zip(cell.kind().shape_gradients(at)) {
-            for (tangent, slope) in tangents.iter_mut().zip(gradient) {
-                (0..3).for_each(|k| tangent[k] += slope * self.nodes[*node][k]);
-            }
-        }
-        tangents
+        let [a, b, _] = self.faces[face].tangents(self.nodes, at);
+        [a, b]
     }
 
     /// The nearest point of one face: that of its flat pieces, then by Newton's method inside of it and along its edges.

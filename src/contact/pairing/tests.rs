@@ -1,21 +1,26 @@
+use super::super::projection::{dot, subtract, unit};
 use super::*;
 use crate::bounds::{Origin::*, within};
-use crate::structure::{Material, PartKind, PlateTheory, RayleighDamping, Shell};
+use crate::mesh::generate::structured_box;
+use crate::mesh::{Cell, CellKind, outer_faces};
+use crate::structure::{Integration, Material, PartKind, PlateTheory, RayleighDamping, Shell, Solid};
 
 const DISC_RADIUS: f64 = 0.075;
 const SLIDER: f64 = 0.010;
 
-fn part(name: &str, thickness: f64, faces: Vec<Cell>) -> Part {
-    let rayleigh = RayleighDamping::default();
-    let material = Material {
+fn steel() -> Material {
+    Material {
         youngs_modulus: 2e11,
         poissons_ratio: 0.3,
         density: 7850.0,
         loss_factor: 0.0,
-        rayleigh,
+        rayleigh: RayleighDamping::default(),
         orthotropic: None,
-    };
-    Part::new(name, faces, Shell { rotary_inertia: false, ..Shell::new(material, thickness) })
+    }
+}
+
+fn part(name: &str, thickness: f64, faces: Vec<Cell>) -> Part {
+    Part::new(name, faces, Shell { rotary_inertia: false, ..Shell::new(steel(), thickness) })
 }
 
 fn shell_of(part: &mut Part) -> &mut Shell {
@@ -72,7 +77,7 @@ fn surfaces<'a>(rig: &'a Rig, patch: ContactPatch) -> Surfaces<'a> {
         side: ContactSide::Edge(&rig.rim),
         counter: &rig.slider,
         faces: &rig.slider.cells,
-        sliding_direction: [1.0, 0.0, 0.0],
+        sliding: Sliding::Along([1.0, 0.0, 0.0]),
         patch,
         stroke: 0.0,
     }
@@ -169,7 +174,7 @@ fn a_pad_on_a_face_has_its_area_and_its_thickness() {
     let mut s = surfaces(&rig, ContactPatch::Reach(1e-3));
     (s.body, s.side) = (&pad, ContactSide::Face(&faces));
     let points = pair_surfaces(&s, &reduce).unwrap();
-    assert_eq!(points.len(), 9);
+    assert_eq!(points.len(), 16);
     let area: f64 = points.iter().map(|p| p.weight).sum();
     assert!(within((area - 4e-4).abs(), 1e-18, RoundOff));
     for p in &points {
@@ -232,8 +237,9 @@ fn points_do_not_depend_on_the_order_of_faces() {
         rig.nodes[181..].iter_mut().for_each(|x| x[2] += bend * x[0] * (0.1 * x[0] - 0.3 * x[1]));
         let faces = add_pad(&mut rig, 0.0);
         let pad = part("pad", 4e-3, faces.clone());
+        let lines = [0, 2].map(|k| [faces[0].nodes()[k], faces[0].nodes()[k + 1]]);
         let mut s = surfaces(&rig, ContactPatch::Reach(5e-3));
-        (s.body, s.side) = (&pad, ContactSide::Face(&faces));
+        (s.body, s.side) = (&pad, ContactSide::Middle(&lines));
         let one = pair_surfaces(&s, &reduce).unwrap();
         let mut other = rig.slider.clone();
         other.cells.reverse();
@@ -276,7 +282,7 @@ fn misplaced_bodies_are_explained() {
     assert!(fault(&rig(0.0, 0.0, -0.02), |_| {}).contains("inside each other"));
     let centred = rig(0.0, 0.0, 0.0);
     assert!(fault(&centred, |s| s.stroke = 0.25).contains("leaves `slider`"));
-    assert!(fault(&centred, |s| s.sliding_direction = [0.0, 0.0, 1.0]).contains("sliding_direction"));
+    assert!(fault(&centred, |s| s.sliding = Sliding::Along([0.0, 0.0, 1.0])).contains("sliding_direction"));
     const OFF: &[[usize; 2]] = &[[190, 191]];
     assert!(fault(&centred, |s| s.side = ContactSide::Edge(OFF)).contains("off part `disc`"));
     assert!(fault(&centred, |s| s.side = ContactSide::Edge(&[])).contains("no line or face"));
@@ -296,4 +302,126 @@ fn misplaced_bodies_are_explained() {
     let mut s = surfaces(&centred, ContactPatch::Reach(1e-3));
     s.stroke = 0.15;
     assert!(pair_surfaces(&s, &reduce).is_ok());
+}
+
+/// A quarter of a shaft in a quarter of a bore, solids of unlike meshes and kinds. Kinds with nodes in the middle of edges have curved faces:
+/// gaps are those of the cylinders but for their parabolas, normals are radial, areas add up to that of the shaft; any rigid motion of either body
+/// closes and slides each point as its displacement says.
+#[test]
+fn a_shaft_in_a_bore_has_a_frame_at_every_point() {
+    let (radius, clearance) = (0.02, 1e-5);
+    for (inner, outer, flat) in [
+        (CellKind::Hexahedron20, CellKind::Tetrahedron10, false),
+        (CellKind::Tetrahedron10, CellKind::Hexahedron27, false),
+        (CellKind::Hexahedron8, CellKind::Hexahedron8, true),
+    ] {
+        let mut nodes: Vec<Vector> = Vec::new();
+        let mut solid = |name: &str, kind: CellKind, from: f64, cells: [usize; 3]| {
+            let mesh = structured_box(kind, [0.01, 1.0, 0.03], cells).unwrap();
+            let first = nodes.len();
+            nodes.extend(mesh.nodes.iter().map(|[r, angle, z]| {
+                let angle = angle * std::f64::consts::FRAC_PI_2;
+                [(from + r) * angle.cos(), (from + r) * angle.sin(), *z]
+            }));
+            let moved = |cell: &Cell| cell.renumbered(|node| first + node);
+            let own: Vec<Cell> =
+                mesh.elements.iter().filter(|cell| cell.dimension() == 3).map(moved).collect();
+            let at = |cell: &Cell, r: f64| {
+                cell.nodes().iter().all(|node| (mesh.nodes[node - first][0] - r).abs() < 1e-9)
+            };
+            let faces = outer_faces(own.iter());
+            let sides =
+                [0.0, 0.01].map(|r| faces.iter().filter(|face| at(face, r)).cloned().collect::<Vec<_>>());
+            let solid = Solid { material: steel(), integration: Integration::Full };
+            (Part::new(name, own, solid), sides, first..nodes.len())
+        };
+        let (shaft, [_, rubbing], of_shaft) = solid("shaft", inner, radius - clearance - 0.01, [1, 5, 3]);
+        let (bore, [under, _], of_bore) = solid("bore", outer, radius, [2, 7, 2]);
+        let s = Surfaces {
+            faces: &under,
+            patch: ContactPatch::Reach(2e-3),
+            ..Surfaces::new(
+                "fit",
+                &nodes,
+                [&shaft, &bore],
+                ContactSide::Face(&rubbing),
+                Sliding::Along([0.0, 0.0, 1.0]),
+            )
+        };
+        let points = pair_surfaces(&s, &reduce).unwrap();
+        assert!(points.len() == rubbing.len() * if inner == CellKind::Tetrahedron10 { 3 } else { 4 });
+        let area: f64 = points.iter().map(|p| p.weight).sum();
+        let exact = std::f64::consts::FRAC_PI_2 * (radius - clearance) * 0.03;
+        let (of_area, of_gap, of_normal) = if flat { (5e-3, 3e-4, 0.2) } else { (2e-5, 3e-6, 1e-2) };
+        assert!(within((area / exact - 1.0).abs(), of_area, Discretisation), "{area} {exact}");
+        let (t, r) = ([3e-4, -2e-4, 5e-4], [0.02, -0.03, 0.04]);
+        for p in &points {
+            assert!(within((p.gap - clearance).abs(), of_gap, Discretisation), "{}", p.gap);
+            let out = unit([p.position[0], p.position[1], 0.0]).unwrap();
+            let moved = |t, r, of: &std::ops::Range<usize>| rigid(&nodes, of.clone(), t, r);
+            // n as the motion of the shaft along each axis shows it: gᵀu = −n·u of the shaft.
+            let normal: Vector = std::array::from_fn(|k| {
+                let along = std::array::from_fn(|i| f64::from(u8::from(i == k)));
+                -p.normal.dot(&moved(along, [0.0; 3], &of_shaft))
+            });
+            assert!(
+                within(dot(add(normal, out), add(normal, out)).sqrt(), of_normal, Discretisation),
+                "{normal:?}"
+            );
+            assert!(within((dot(normal, normal) - 1.0).abs(), 1e-13, RoundOff));
+            let foot = subtract(p.position, scale(p.gap, normal));
+            for (sign, of, x) in [(1.0, &of_shaft, p.position), (-1.0, &of_bore, foot)] {
+                let u = moved(t, r, of);
+                let there = scale(sign, add(t, cross(r, x)));
+                assert!(within((p.normal.dot(&u) + dot(there, normal)).abs(), 1e-14, RoundOff));
+                assert!(within((p.tangents[0].dot(&u) - there[2]).abs(), 1e-14, RoundOff));
+                let t2 = cross(normal, [0.0, 0.0, 1.0]);
+                assert!(within((p.tangents[1].dot(&u) - dot(there, t2)).abs(), 1e-14, RoundOff));
+            }
+        }
+    }
+}
+
+/// A pad that is wider than the face under it: points beside the face are left out, and so are faces of the pad that look elsewhere.
+#[test]
+fn points_beside_the_face_and_faces_that_look_away_are_left_out() {
+    let mut nodes = Vec::new();
+    let mut solid = |name: &str, lengths: [f64; 3], at: Vector, cells: [usize; 3]| {
+        let mesh = structured_box(CellKind::Hexahedron20, lengths, cells).unwrap();
+        let first = nodes.len();
+        nodes.extend(mesh.nodes.iter().map(|x| add(*x, at)));
+        let own: Vec<Cell> = mesh.elements.iter().filter(|cell| cell.dimension() == 3).cloned().collect();
+        let own: Vec<Cell> = own.iter().map(|cell| cell.renumbered(|node| first + node)).collect();
+        let faces = outer_faces(own.iter());
+        (Part::new(name, own, Solid { material: steel(), integration: Integration::Full }), faces)
+    };
+    let (disc, all) = solid("disc", [0.04, 0.04, 0.01], [0.0; 3], [2, 2, 1]);
+    let (pad, skin) = solid("pad", [0.04, 0.02, 1e-4], [0.02, 0.01, 0.01], [4, 2, 1]);
+    let upper: Vec<Cell> = all
+        .into_iter()
+        .filter(|face| face.nodes().iter().all(|node| (nodes[*node][2] - 0.01).abs() < 1e-12))
+        .collect();
+    // With every face of a pad thinner than the reach.
+    let mut s = Surfaces::new(
+        "face",
+        &nodes,
+        [&pad, &disc],
+        ContactSide::Face(&skin),
+        Sliding::Along([1.0, 0.0, 0.0]),
+    );
+    s.faces = &upper;
+    let points = pair_surfaces(&s, &reduce).unwrap();
+    // Half of its lower face is over the disc.
+    assert_eq!(points.len(), 4 * 4);
+    let area: f64 = points.iter().map(|p| p.weight).sum();
+    assert!(within((area - 0.02 * 0.02).abs(), 1e-18, RoundOff), "{area}");
+    assert!(points.iter().all(|p| within(p.gap.abs(), 1e-17, RoundOff) && p.position[0] < 0.04));
+    let away: Vec<Cell> = skin
+        .iter()
+        .filter(|face| face.nodes().iter().all(|node| nodes[*node][2] > 0.01 + 5e-5))
+        .cloned()
+        .collect();
+    s.side = ContactSide::Face(&away);
+    let text = pair_surfaces(&s, &reduce).unwrap_err().to_string();
+    assert!(text.contains("faces of `pad` that look away from `disc`"), "{text}");
 }

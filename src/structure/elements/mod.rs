@@ -57,7 +57,7 @@ pub mod waves;
 pub use bar::BarElement;
 pub use beam::Beam;
 pub use element_matrix::ElementMatrix;
-pub use face::{WeightedTriangle, split_face};
+pub use face::{WeightedTriangle, on_triangles, split_face};
 pub use finite_element::{Acting, FacePoint, FiniteElement, TheoryError};
 pub use kirchhoff::KirchhoffTriangle;
 pub use mindlin::{MindlinQuadrilateral, MindlinTriangle};
