@@ -20,6 +20,8 @@ const LARGE: (usize, f64) = (15_000, 2.5e8);
 const PROGRAM: f64 = 4e7;
 /// Matrices like K at the peak.
 const MATRICES: f64 = 5.8;
+/// Further ones where K or C has sparse skew parts, as of a rotation: counted in runs of two plates and a solid.
+const SKEW_MATRICES: f64 = 6.5;
 /// Factors of K − σM at the peak.
 const FACTORS: f64 = 1.4;
 /// Vectors for each real mode at the peak of a complex analysis without left vectors,
@@ -155,7 +157,8 @@ pub fn expected_memory(prepared: &Prepared, selection: Selection) -> Result<Opti
             left_vectors: cea.left_vectors || selection.takes_left_vectors(case),
         }),
     };
-    let bytes = run.peak(kind) + samples;
+    let skew = prepared.system.skew().map_or(0.0, |_| SKEW_MATRICES * run.matrix());
+    let bytes = run.peak(kind) + skew + samples;
     if dofs < LARGE.0 && bytes < LARGE.1 {
         return Ok(None);
     }
@@ -186,6 +189,11 @@ struct ProblemSize {
 }
 
 impl ProblemSize {
+    /// The bytes of a matrix like K.
+    fn matrix(&self) -> f64 {
+        12.0 * self.entries as f64
+    }
+
     /// The peak \[bytes\]: as many matrices, factors and vectors as were counted in runs of 19 000 to 146 000 degrees of freedom.
     ///
     /// The size of the matrices also represents what is proportional to the mesh. Of each mode there are two vectors in the basis of Lanczos
@@ -194,7 +202,7 @@ impl ProblemSize {
     /// values.
     fn peak(&self, kind: AnalysisKind) -> f64 {
         let vector = 8.0 * self.dofs as f64;
-        let (matrix, factor) = (12.0 * self.entries as f64, 8.0 * self.fill as f64);
+        let (matrix, factor) = (self.matrix(), 8.0 * self.fill as f64);
         let vectors = match kind {
             AnalysisKind::Real => 3.0,
             AnalysisKind::Complex { left_vectors: false } => RIGHT_VECTORS,

@@ -54,12 +54,14 @@ fn nothing_touches(prepared: &Prepared, faults: &mut Faults) {
     }
 }
 
-/// Refuses parts that can move as rigid bodies without any force, even with every contact closed: they have no steady state.
+/// Refuses parts that can move as rigid bodies without any force, even with every contact closed: they have no steady state, where something
+/// pushes.
 fn parts_without_a_support(prepared: &Prepared, faults: &mut Faults) {
-    if prepared.case.matrices.is_some() {
+    let system = &prepared.system;
+    let pushed = !system.pairs.is_empty() || system.load.iter().any(|force| *force != 0.0);
+    if prepared.case.matrices.is_some() || !pushed {
         return;
     }
-    let system = &prepared.system;
     let stiffness = &system.structure.stiffness;
     let closed = closed_springs(system, stiffness);
     let springs: Vec<_> =

@@ -88,8 +88,9 @@ impl Assembled {
                 std::iter::once(&*self.structure.stiffness).chain(added).map(|k| (1.0, k)).collect();
             structure.stiffness = add_scaled(&all).into();
         }
-        let skew =
-            |damping: SparseMatrix| Skew { stiffness: Arc::new(pattern.zero()), damping: damping.into() };
+        let none = SparseMatrix::try_new_from_triplets(self.dofs.n_dofs(), self.dofs.n_dofs(), &[]);
+        let stiffness = Arc::new(none.expect("a matrix without entries"));
+        let skew = |damping: SparseMatrix| Skew { stiffness, damping: damping.into() };
         Ok((structure, gyroscopic.map(|g| Coupling::sparse(skew(g)))))
     }
 

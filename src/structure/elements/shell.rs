@@ -93,7 +93,10 @@ impl FlatShell {
 
     /// K_σ of membrane forces in the local axes (see [`FlatShell::membrane_forces`]), 18 × 18.
     pub fn geometric_stiffness(&self, membrane_forces: [f64; 3]) -> SMatrix<f64, 18, 18> {
-        self.embedded(Some(&geometric::plate(&self.triangle.corners, membrane_forces)), None)
+        let corners = &self.triangle.corners;
+        let [bending, membrane] =
+            [geometric::plate, geometric::membrane].map(|of| of(corners, membrane_forces));
+        self.embedded(Some(&bending), Some(&membrane))
     }
 
     /// (ux, uy, uz, rx, ry, rz) of the mid-surface at barycentric coordinates `at` for a unit of each of the 18 degrees

@@ -211,6 +211,16 @@ fn with_bending(bending: &SMatrix<f64, 12, 12>) -> SMatrix<f64, 24, 24> {
     whole
 }
 
+/// Adds a matrix on (u, v, θ₃) at three corners.
+fn add_membrane(triangle: &[usize; 3], a: &SMatrix<f64, 9, 9>, to: &mut SMatrix<f64, 24, 24>) {
+    let at = |k: usize| 6 * triangle[k / 3] + [0, 1, 5][k % 3];
+    for i in 0..9 {
+        for j in 0..9 {
+            to[(at(i), at(j))] += a[(i, j)];
+        }
+    }
+}
+
 /// The six rows of each corner of a triangle among those of the quadrilateral.
 fn rows_of(triangle: &[usize; 3]) -> [usize; 18] {
     std::array::from_fn(|k| 6 * triangle[k / 6] + k % 6)
@@ -293,12 +303,7 @@ impl FiniteElement for MindlinQuadrilateral<'_> {
             // The mass of the triangle as it is, the shape of its projection.
             let projected = 0.5 * twice_area(&corners);
             let membrane = mass::membrane(&corners, 0.5 * density * area / projected, thickness);
-            let at = |k: usize| 6 * triangle[k / 3] + [0, 1, 5][k % 3];
-            for i in 0..9 {
-                for j in 0..9 {
-                    local[(at(i), at(j))] += membrane[(i, j)];
-                }
-            }
+            add_membrane(&triangle, &membrane, &mut local);
         }
         if plate.rotary_inertia {
             bending += rotary_inertia(&plane, &sides, density, thickness);
@@ -316,6 +321,7 @@ impl FiniteElement for MindlinQuadrilateral<'_> {
         let plane = self.plane();
         let map = slopes(&corner_shear(&self.sides(&plane)));
         let mut bending = SMatrix::<f64, 12, 12>::zeros();
+        let mut local = SMatrix::<f64, 24, 24>::zeros();
         for (triangle, shell) in self.triangles() {
             let u = triangle.map(|k| displacement[self.nodes[k]]);
             let [nx, ny, nxy] = shell.membrane_forces(&plate.material, plate.thickness, &u);
@@ -326,8 +332,9 @@ impl FiniteElement for MindlinQuadrilateral<'_> {
             let corners = triangle.map(|k| plane.corners[k]);
             let forces = [n[(0, 0)], n[(1, 1)], n[(0, 1)]].map(|n| 0.5 * n);
             bending += on_slopes(&map, &triangle, &geometric::plate(&corners, forces));
+            add_membrane(&triangle, &geometric::membrane(&corners, forces), &mut local);
         }
-        k.copy(&to_global(&with_bending(&symmetrized(bending)), &plane.frame));
+        k.copy(&to_global(&(local + with_bending(&symmetrized(bending))), &plane.frame));
         true
     }
 

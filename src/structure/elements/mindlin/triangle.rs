@@ -156,7 +156,7 @@ impl FiniteElement for MindlinTriangle<'_> {
         let forces = shell.membrane_forces(&self.plate.material, self.plate.thickness, &u);
         let map = self.slopes(corners);
         let bending = map.transpose() * geometric::plate(corners, forces) * map;
-        k.copy(&shell.embedded(Some(&symmetrized(bending)), None));
+        k.copy(&shell.embedded(Some(&symmetrized(bending)), Some(&geometric::membrane(corners, forces))));
         true
     }
 
