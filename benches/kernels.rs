@@ -1,5 +1,5 @@
 //! What the analyses are made of, timed on square plates of two sizes in one run: assembly, factorisation, solution, real
-//! modes. `cargo bench --bench kernels [-- --threads N]`.
+//! modes; and the assembly of a solid. `cargo bench --bench kernels [-- --threads N]`.
 //!
 //! Factorisations are given as ratios to the LLᵀ of faer on the same matrix, and growth with the size as an exponent.
 
@@ -12,14 +12,26 @@ use stridor::linalg::eigenpairs::{Wanted, lowest_eigenpairs};
 use stridor::linalg::factor::SymbolicFactor;
 use stridor::linalg::sparse::add_scaled;
 use stridor::linalg::unsymmetric::spectrum;
-use stridor::mesh::Cell;
-use stridor::structure::{Material, Model, Part, RayleighDamping, Shell, assemble};
+use stridor::mesh::generate::structured_box;
+use stridor::mesh::{Cell, CellKind};
+use stridor::structure::{Material, Model, Part, RayleighDamping, Shell, Solid, assemble};
 
 /// Seconds of `work`, and what it gives.
 fn timed<T>(work: impl FnOnce() -> T) -> (f64, T) {
     let started = Instant::now();
     let value = work();
     (started.elapsed().as_secs_f64(), value)
+}
+
+fn steel() -> Material {
+    Material {
+        youngs_modulus: 2.1e11,
+        poissons_ratio: 0.3,
+        density: 7850.0,
+        loss_factor: 0.0,
+        rayleigh: RayleighDamping::default(),
+        orthotropic: None,
+    }
 }
 
 /// A free square plate of n × n × 2 triangles, 1 m wide and 10 mm thick, in bending.
@@ -33,21 +45,29 @@ fn plate(n: usize) -> Model {
             Cell::triangle([id(i, j), id(i + 1, j + 1), id(i, j + 1)]),
         ]
     };
-    let material = Material {
-        youngs_modulus: 2.1e11,
-        poissons_ratio: 0.3,
-        density: 7850.0,
-        loss_factor: 0.0,
-        rayleigh: RayleighDamping::default(),
-        orthotropic: None,
-    };
     let faces = (0..n).flat_map(|i| (0..n).flat_map(move |j| cell(i, j))).collect();
     let part = Part::new(
         "plate",
         faces,
-        Shell { bending_only: true, rotary_inertia: false, ..Shell::new(material, 0.01) },
+        Shell { bending_only: true, rotary_inertia: false, ..Shell::new(steel(), 0.01) },
     );
     Model { nodes, parts: vec![part], ..Model::default() }
+}
+
+/// Prints how fast a box of 10-node tetrahedra is assembled.
+fn measure_solids() -> Result<(), Box<dyn Error>> {
+    let mesh = structured_box(CellKind::Tetrahedron10, [0.3, 0.2, 0.1], [36, 24, 12])?;
+    let cells: Vec<Cell> = mesh.elements.iter().filter(|cell| cell.dimension() == 3).cloned().collect();
+    let count = cells.len() as f64;
+    let part = Part::new("box", cells, Solid::new(steel()));
+    let model = Model { nodes: mesh.nodes, parts: vec![part], ..Model::default() };
+    let (time, assembled) = timed(|| assemble(&model));
+    let n = assembled?.structure.n_dofs();
+    let rate = 60e-6 * count / (time * rayon::current_num_threads() as f64);
+    println!(
+        "\n{count} tetrahedra of 10 nodes, {n} degrees of freedom: M and K in {time:.2} s, {rate:.2} million a minute and thread"
+    );
+    Ok(())
 }
 
 /// Prints the times of one size; the seconds of the real modes and the degrees of freedom.
@@ -117,6 +137,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let (small, large) = (measure(81)?, measure(257)?);
     let exponent = (large.0 / small.0).ln() / (large.1 / small.1).ln();
+    measure_solids()?;
     println!("\nTime of the real modes grows like (degrees of freedom)^{exponent:.2}");
     println!("\nDense eigenvalues with left and right vectors");
     for n in [100, 200, 400] {
