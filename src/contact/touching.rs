@@ -1,4 +1,7 @@
 //! Where a body may touch: its nodes, or the integration points of its faces; and where each of these stands over the counter-faces.
+//!
+//! Plates touch with their nodes: they have so few motions that points that stick at the integration points of triangles would hold each of them
+//! several times, and share their forces in no definite way.
 
 use super::projection::{CounterSurface, Foot, Vector, add, area_vector, cross, dot, scale, unit};
 use super::surfaces::{ContactPatch, ContactSide, Surfaces};
@@ -76,8 +79,11 @@ pub(super) fn touching<'a>(surfaces: &Surfaces<'a>, place: &str) -> Result<Vec<T
     if own.is_empty() {
         return Err(Error::input(Fault::new(place, "no line or face to touch with", "a region of the body")));
     }
+    let is_solid = surfaces.body.as_shell().is_none();
     Ok(match (surfaces.side, surfaces.patch) {
-        (ContactSide::Face(faces), ContactPatch::Reach(_)) => integration_points(surfaces.nodes, faces),
+        (ContactSide::Face(faces), ContactPatch::Reach(_)) if is_solid => {
+            integration_points(surfaces.nodes, faces)
+        }
         _ => nodes(surfaces, cells, &own),
     })
 }
