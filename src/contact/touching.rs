@@ -150,12 +150,14 @@ pub(super) fn candidates<'a>(
             ContactSide::Middle(_) => all.extend(at(place, 0.0, place.weight)),
             ContactSide::Face(_) => {
                 let Some(foot) = counter.foot(place.position) else { continue };
-                // A plate touches with the side towards the counter-face.
                 let along = dot(place.normal, foot.normal);
-                let h = if along > 0.0 { -half } else { half };
-                let facing = if half > 0.0 { along.abs() } else { -along };
-                if matches!(place.on, On::Node(_)) || facing >= FACING {
-                    all.extend(at(place, h, place.weight));
+                match place.on {
+                    // A plate touches with the side towards the counter-face.
+                    On::Node(_) => {
+                        all.extend(at(place, if along > 0.0 { -half } else { half }, place.weight))
+                    }
+                    On::Face(..) if -along >= FACING => all.extend(at(place, 0.0, place.weight)),
+                    On::Face(..) => {}
                 }
             }
         }

@@ -11,13 +11,13 @@
 
 use super::SteadySliding;
 use super::condensed::closed_factor;
-use super::linear::{directions, unsymmetric_force};
+use super::linear::{add_reaction, directions, elastic_force};
 use super::load_steps::Newton;
 use super::point_laws::{Fraction, Law, PointLaws, State, are_finite, force_change, largest_force};
 use crate::error::Result;
 use crate::linalg::gmres::gmres;
 use crate::linalg::lu::Lu;
-use crate::linalg::sparse::{add_scaled, multiply_vector, sum_of_squares};
+use crate::linalg::sparse::{add_scaled, sum_of_squares};
 use crate::linalg::{Engine, SparseMatrix, SymmetricFactor};
 use crate::system::{ContactPair, Coupling, System};
 use faer::Mat;
@@ -89,7 +89,7 @@ impl Preconditioner {
         let mut force = Mat::<f64>::zeros(factor.n(), m);
         let mut schur = Mat::<f64>::zeros(m, m);
         for ((k, _, point), d) in contact.points.iter().zip(springs) {
-            if let Some(c) = contact.loaded.iter().position(|loaded| loaded == k) {
+            if let Some(c) = contact.unknown(*k) {
                 point.normal.add_to(*d, force.col_as_slice_mut(c));
                 schur[(c, c)] += d;
             }
@@ -141,13 +141,9 @@ impl<'a> WholeProblem<'a> {
 
     /// φ f − K u − r_c.
     fn rest(&self, u: &[f64], laws: &[Law], fraction: Fraction) -> Vec<f64> {
-        let mut force = multiply_vector(self.stiffness, u);
-        self.structure.coupling.into_iter().for_each(|rest| unsymmetric_force(rest, u, &mut force));
+        let mut force = elastic_force(self.stiffness, self.structure.coupling, u);
         for ((.., point), (forces, _)) in self.contact.points.iter().zip(laws) {
-            let [g, t1, t2] = directions(point);
-            g.add_to(forces.normal, &mut force);
-            t1.add_to(-forces.friction[0], &mut force);
-            t2.add_to(-forces.friction[1], &mut force);
+            add_reaction(point, forces, &mut force);
         }
         self.load.iter().zip(&force).map(|(load, force)| fraction * load - force).collect()
     }
@@ -161,7 +157,7 @@ impl<'a> WholeProblem<'a> {
             g.add_to(by_normal, &mut image[..n]);
             t1.add_to(-by_t1, &mut image[..n]);
             t2.add_to(-by_t2, &mut image[..n]);
-            if let Some(c) = self.contact.loaded.iter().position(|loaded| loaded == k) {
+            if let Some(c) = self.contact.unknown(*k) {
                 image[n + c] += by_normal;
             }
         }
@@ -200,8 +196,7 @@ impl<'a> WholeProblem<'a> {
         let rhs = self.rhs(state, r, laws, fraction);
         let product = |x: &[f64]| {
             let (u, _) = x.split_at(self.load.len());
-            let mut image = multiply_vector(self.stiffness, u);
-            self.structure.coupling.into_iter().for_each(|rest| unsymmetric_force(rest, u, &mut image));
+            let mut image = elastic_force(self.stiffness, self.structure.coupling, u);
             image.resize(x.len(), 0.0);
             self.push(laws, self.motions(x), &mut image);
             image

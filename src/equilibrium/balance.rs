@@ -1,10 +1,9 @@
 //! How far a state is from equilibrium on the full system.
 
 use super::PointState;
-use super::linear::{directions, unsymmetric_force};
+use super::linear::{add_reaction, elastic_force};
 use super::point_laws::respond;
 use crate::linalg::SparseMatrix;
-use crate::linalg::sparse::multiply_vector;
 use crate::system::{ContactPair, ContactPoint, System};
 
 /// f − K u − r_c, and its size relative to ‖f‖ + ‖r_c‖.
@@ -16,13 +15,9 @@ pub(super) fn residual(
 ) -> (Vec<f64>, f64) {
     let mut contact = vec![0.0; u.len()];
     for ((_, point), state) in system.points().zip(states) {
-        let [g, t1, t2] = directions(point);
-        g.add_to(state.forces.normal, &mut contact);
-        t1.add_to(-state.forces.friction[0], &mut contact);
-        t2.add_to(-state.forces.friction[1], &mut contact);
+        add_reaction(point, &state.forces, &mut contact);
     }
-    let mut elastic = multiply_vector(k, u);
-    system.coupling.iter().for_each(|rest| unsymmetric_force(rest, u, &mut elastic));
+    let elastic = elastic_force(k, system.coupling.as_ref(), u);
     let r: Vec<f64> = (0..u.len()).map(|i| system.load[i] - elastic[i] - contact[i]).collect();
     let scale = norm_2(&system.load) + norm_2(&contact);
     let size = if scale > 0.0 { norm_2(&r) / scale } else { norm_2(&r) };

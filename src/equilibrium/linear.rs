@@ -4,7 +4,9 @@ use super::{PointState, SteadySliding};
 use crate::error::Result;
 use crate::linalg::sparse::{add_scaled, multiply_vector, sum_of_squares};
 use crate::linalg::{SparseMatrix, SparseVector};
-use crate::system::{ContactMotion, ContactPoint, ContactTangent, Coupling, Structure, System};
+use crate::system::{
+    ContactForces, ContactMotion, ContactPoint, ContactTangent, Coupling, Structure, System,
+};
 use std::borrow::Cow;
 
 /// The linearised contact: K_c = Σ U k Uᵀ and C_c = Σ U c Uᵀ with U = \[g t₁ t₂\] of each point that carries load.
@@ -53,6 +55,14 @@ pub fn directions(point: &ContactPoint) -> [&SparseVector; 3] {
     [&point.normal, &point.tangents[0], &point.tangents[1]]
 }
 
+/// Adds g N − t₁ F₁ − t₂ F₂ of a point to a force.
+pub(super) fn add_reaction(point: &ContactPoint, forces: &ContactForces, total: &mut [f64]) {
+    let [g, t1, t2] = directions(point);
+    g.add_to(forces.normal, total);
+    t1.add_to(-forces.friction[0], total);
+    t2.add_to(-forces.friction[1], total);
+}
+
 /// K_c and C_c at steady sliding: the Jacobian of the laws, point by point.
 pub fn linearize(system: &System, steady: &SteadySliding) -> LinearContact {
     debug_assert_eq!(system.points().count(), steady.points.len());
@@ -71,16 +81,19 @@ pub fn linearize_points(points: &[PointState]) -> LinearContact {
     LinearContact { blocks }
 }
 
-/// Adds (W k Wᵀ + N) u, what is not symmetric in an imported stiffness, to a force.
-pub(super) fn unsymmetric_force(rest: &Coupling, u: &[f64], force: &mut [f64]) {
+/// (K + W k Wᵀ + N) u: with what is not symmetric in an imported stiffness.
+pub(super) fn elastic_force(k: &SparseMatrix, rest: Option<&Coupling>, u: &[f64]) -> Vec<f64> {
+    let mut force = multiply_vector(k, u);
+    let Some(rest) = rest else { return force };
     let motions: Vec<f64> = rest.directions.iter().map(|w| w.dot(u)).collect();
     for (i, w) in rest.directions.iter().enumerate() {
-        w.add_to(motions.iter().enumerate().map(|(j, e)| rest.stiffness[(i, j)] * e).sum(), force);
+        w.add_to(motions.iter().enumerate().map(|(j, e)| rest.stiffness[(i, j)] * e).sum(), &mut force);
     }
     if let Some(skew) = &rest.skew {
         // A product with a matrix stored by columns is that with its transpose.
         force.iter_mut().zip(multiply_vector(&skew.stiffness, u)).for_each(|(f, v)| *f -= v);
     }
+    force
 }
 
 /// K, or K + K_σ(u₀) when the system asks for the geometric stiffness of the preload.
@@ -117,9 +130,7 @@ pub fn contact_force(system: &System, approach: &[f64], displacement: &[f64], ve
                 slip_velocity: [pair.velocity_at(point) - t1.dot(velocity), -t2.dot(velocity)],
             };
             let (forces, _) = pair.law.respond(&motion, point.weight);
-            g.add_to(forces.normal, &mut total);
-            t1.add_to(-forces.friction[0], &mut total);
-            t2.add_to(-forces.friction[1], &mut total);
+            add_reaction(point, &forces, &mut total);
         }
     }
     total

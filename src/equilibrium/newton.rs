@@ -122,7 +122,7 @@ impl<'a> ContactProblem<'a> {
         let mut j = Mat::<f64>::zeros(n + loaded.len(), n + loaded.len());
         for q in 0..n {
             let slope = laws[q].1.by_penetration;
-            let unknown = loaded.iter().position(|k| *k == points[q].0).map(|c| n + c);
+            let unknown = self.contact.unknown(points[q].0).map(|c| n + c);
             for p in 0..n {
                 let by_law = s[(p, q)] * slope[0] - t1[(p, q)] * slope[1] - t2[(p, q)] * slope[2];
                 let identity = if p == q { 1.0 } else { 0.0 };

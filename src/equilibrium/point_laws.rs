@@ -46,6 +46,11 @@ impl<'a> PointLaws<'a> {
         PointLaws { pairs, points, loaded }
     }
 
+    /// The place of the approach of a pair among those that are unknown.
+    pub(super) fn unknown(&self, pair: usize) -> Option<usize> {
+        self.loaded.binary_search(&pair).ok()
+    }
+
     /// Forces of every point at its penetration, a part of its friction.
     pub(super) fn respond(&self, penetration: &[f64], fraction: Fraction) -> Vec<Law> {
         let at = |(penetration, (_, pair, point)): (&f64, &(usize, &ContactPair, &ContactPoint))| {

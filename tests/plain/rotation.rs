@@ -29,15 +29,19 @@ fn ring(
     let part = Part::new("disc", mesh.elements.iter().filter(own).cloned().collect(), solid);
     let nodes = mesh.nodes.iter().map(|[x, y, z]| [*x, *y, z + through[0]]).collect();
     let axis = RotationAxis { point: [0.0; 3], direction: [0.0, 0.0, 1.0] };
-    let rotation = Rotation {
+    Model { nodes, parts: vec![part], rotations: vec![turning(axis, speed)], ..Model::default() }
+}
+
+/// Part `disc` that turns, with all that this brings.
+fn turning(axis: RotationAxis, speed: f64) -> Rotation {
+    Rotation {
         parts: vec!["disc".into()],
         axis,
         speed,
         gyroscopic: true,
         transport: true,
         spin_stiffness: true,
-    };
-    Model { nodes, parts: vec![part], rotations: vec![rotation], ..Model::default() }
+    }
 }
 
 /// The system of a model without contacts.
@@ -121,14 +125,7 @@ fn a_free_body_tilts_by_eulers_equations() {
             let model = Model {
                 nodes: (0..=rings).flat_map(|ring| (0..around).map(move |k| at(ring, k))).collect(),
                 parts: vec![Part::new("disc", cells.collect(), shell)],
-                rotations: vec![Rotation {
-                    parts: vec!["disc".into()],
-                    axis,
-                    speed,
-                    gyroscopic: true,
-                    transport: true,
-                    spin_stiffness: true,
-                }],
+                rotations: vec![turning(axis, speed)],
                 ..Model::default()
             };
             rigid_terms(&model, &format!("{theory:?} {triangles}"));
