@@ -304,13 +304,17 @@ pub fn arrows(contact: &Contact, regions: &Regions, model: &Model, points: &[Con
     let sliding = Vector3::from(contact.sliding.way().at(middle.into())) * contact.sliding.rate();
     let press = match (contact.into, counter_faces(&contact.counter, regions, model, ("", "")).ok()) {
         (Some(into), _) => Vector3::from(into),
-        (None, Some(CounterFaces { faces, .. })) => {
+        (None, Some(CounterFaces { part, faces })) => {
             let at = |face: &Cell, k: usize| Vector3::from(model.nodes[face.corners()[k]]);
             let normal = |face: &Cell| (at(face, 1) - at(face, 0)).cross(&(at(face, 2) - at(face, 0)));
             let sum = faces.iter().map(normal).sum::<Vector3<f64>>();
             let whole: f64 = faces.iter().map(|face| normal(face).norm()).sum();
-            let above = faces.first().map_or(0.0, |face| (middle - at(face, 0)).dot(&sum));
-            if sum.norm() > ONE_WAY * whole { -above.signum() * sum } else { Vector3::zeros() }
+            // The faces of a solid look outwards; a plate is pressed on the side of the points.
+            let side = match part.as_shell() {
+                Some(_) => faces.first().map_or(0.0, |face| (middle - at(face, 0)).dot(&sum)).signum(),
+                None => 1.0,
+            };
+            if sum.norm() > ONE_WAY * whole { -side * sum } else { Vector3::zeros() }
         }
         (None, None) => Vector3::zeros(),
     };

@@ -105,6 +105,9 @@ fn patch(body: (CellKind, [usize; 3]), counter: (CellKind, [usize; 3]), stiffnes
     );
     let exact = approach / (1.0 / stiffness + 2.0 * height / E);
     steady([block("body", body, height), block("counter", counter, 0.0)], &tables, |prepared, steady| {
+        // Towards the counter-body, on whose face the points lie.
+        let [[press, _]] = prepared.arrows()[..] else { panic!("one pair") };
+        assert!(within((press[2] + 1.0).abs(), 1e-12, RoundOff), "{press:?}");
         let off = |values: Vec<f64>| values.iter().map(|p| (p / exact - 1.0).abs()).fold(0.0, f64::max);
         [
             off(pressures(prepared, steady).iter().map(|(_, p, _)| *p).collect()),
