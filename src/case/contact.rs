@@ -27,7 +27,7 @@ declare! {
             .positive()
             .or(1e-3)
             .invalidates(Invalidates::Interface)
-            .derivative(|_| Derivative::None("it only decides which contact points are considered")),
+            .derivative(|_, _| Derivative::None("it only decides which contact points are considered")),
         /// Normal load or approach of the pair.
         pub pressing: Pressing = key::flat(),
         /// Gaps of the points within reach: those of the meshes, or none.
@@ -43,7 +43,7 @@ declare! {
                 .check("0 beside `points`, which do not travel", move |v| !given || *v == 0.0)
                 .or(0.0)
                 .invalidates(Invalidates::Interface)
-                .derivative(|_| Derivative::None("it only decides which contact points are considered"))
+                .derivative(|_, _| Derivative::None("it only decides which contact points are considered"))
         },
         /// Tilts and moves everything connected to the body; as meshed when absent.
         pub placement: Option<Placement> = key::table().optional(),
@@ -55,10 +55,14 @@ declare! {
         pub friction: Friction = key::table()
             .required("a table such as { law = \"coulomb\", mu0 = 0.4 }")
             .invalidates(Invalidates::Law),
-        /// Tangential stiffness before a point slips.
+        /// Tangential stiffness before a point slips: by default the normal one where nothing slides, and where faces of solids touch, whose
+        /// points are more than what they could hold rigidly; else none.
         pub bristle: Option<BristleChoice> = {
-            let per = normal.per;
-            key::table().invalidates(Invalidates::Law).optional().beforehand(move |b: &mut BristleChoice| b.per = per)
+            let (per, slides) = (normal.per, sliding.rate() != 0.0);
+            key::table()
+                .invalidates(Invalidates::Law)
+                .optional()
+                .beforehand(move |b: &mut BristleChoice| (b.per, b.slides) = (per, slides))
         },
     }
 }
@@ -98,16 +102,26 @@ fn check(contact: &Contact, report: &mut Report) {
         let expected = "no such key beside `rotation`: a counter-body that turns keeps its place";
         report.fault("stroke", "a way along a direction", expected, "Remove it");
     }
-    let Some(_) = &contact.bristle else { return };
+    let rests = contact.rests() && !report.unread("sliding_velocity") && !report.unread("rotation");
+    if rests && contact.stroke > 0.0 {
+        report.fault("stroke", "a way along a direction", "none where nothing slides", "Remove it");
+    }
+    if rests && contact.bristle.is_none() && contact.normal.stiffness == 0.0 {
+        let expected = "{ stiffness = … }, the tangential stiffness, as the normal one is cubic alone";
+        report.fault("bristle", "nothing", expected, "");
+    }
+    if contact.bristle.is_none() && !rests {
+        return;
+    }
     if contact.friction.regularisation > 0.0 {
-        let expected = "none beside a `bristle`, which sticks by itself";
+        let expected = "none where points stick elastically (with a `bristle`, or without sliding)";
         report.fault("friction.regularisation", "a velocity", expected, "");
     }
     if contact.friction.sense != Sense::WithSlip {
-        report.fault("friction.sense", "against_sliding", "with_slip beside a `bristle`", "");
+        report.fault("friction.sense", "against_sliding", "with_slip where points stick elastically", "");
     }
     if !contact.normal.unilateral {
-        let expected = "true beside a `bristle`: a contact that pulls does not stick";
+        let expected = "true where points stick elastically: a contact that pulls does not stick";
         report.fault("normal.unilateral", "false", expected, "");
     }
 }
@@ -179,9 +193,10 @@ variants! {
     pub enum SlidingChoice by presence or "sliding_velocity" {
         /// Along one direction.
         Along "sliding_velocity" {
-            /// V \[m/s\] of the counter-body relative to the body along the sliding direction.
+            /// V \[m/s\] of the counter-body relative to the body along the sliding direction; 0 for bodies that do not slide, whose points
+            /// stick elastically (`bristle`).
             sliding_velocity: f64 = key::quantity(VELOCITY)
-                .check("a velocity that is not zero (steady sliding has no state at rest)", |v| *v != 0.0)
+                .derivative(at_rest)
                 .invalidates(Invalidates::Equilibrium),
             /// Direction in which the counter-body slides.
             sliding_direction: [f64; 3] =
@@ -196,10 +211,28 @@ variants! {
     }
 }
 
+/// Whether there is a derivative by a velocity of sliding.
+fn at_rest(_: &[usize], velocity: f64) -> Derivative {
+    match velocity == 0.0 {
+        true => Derivative::None("at rest the contact sticks, at any other velocity it slides"),
+        false => Derivative::Exists,
+    }
+}
+
+impl Contact {
+    /// Whether the bodies do not slide past each other.
+    pub fn rests(&self) -> bool {
+        self.sliding.rate() == 0.0
+    }
+}
+
 impl SlidingChoice {
     /// The direction of sliding at every point.
     pub fn way(&self) -> Sliding {
         match self {
+            SlidingChoice::Along { sliding_direction, sliding_velocity: 0.0 } => {
+                Sliding::AtRest(*sliding_direction)
+            }
             SlidingChoice::Along { sliding_direction, .. } => Sliding::Along(*sliding_direction),
             SlidingChoice::About { rotation } => {
                 Sliding::About { axis: rotation.axis, point: rotation.point }
@@ -224,9 +257,9 @@ declare! {
         pub axis: [f64; 3] = key::direction().invalidates(Invalidates::Interface),
         /// x₀ \[m\], a point of the axis.
         pub point: [f64; 3] = key::quantities(LENGTH).or([0.0; 3]).invalidates(Invalidates::Interface),
-        /// Ω \[rad/s\].
+        /// Ω \[rad/s\]; 0 for bodies that do not slide.
         pub speed: f64 = key::quantity(ANGULAR_VELOCITY)
-            .check("a speed that is not zero (steady sliding has no state at rest)", |v| *v != 0.0)
+            .derivative(at_rest)
             .label("speed of rotation")
             .invalidates(Invalidates::Equilibrium),
     }
@@ -250,18 +283,25 @@ variants! {
 }
 
 declare! {
-    /// Elastic bristles between the bodies, for sticking in time; in the unit of the normal stiffness.
+    /// Elastic bristles between the bodies, for sticking in time and where nothing slides; in the unit of the normal stiffness.
     pub struct BristleChoice {
         /// k_t.
-        pub stiffness: f64 = key::quantity(per.dimensions()[0]).positive().derivative(|_| Derivative::Zero),
+        pub stiffness: f64 = key::quantity(per.dimensions()[0]).positive().derivative(in_time(*slides)),
         /// c_t.
         pub damping: f64 =
-            key::quantity(per.dimensions()[2]).non_negative().or(0.0).derivative(|_| Derivative::Zero),
+            key::quantity(per.dimensions()[2]).non_negative().or(0.0).derivative(in_time(*slides)),
     }
     also {
         /// Reference of the normal stiffness: a point, a length or an area.
         pub per: StiffnessPer,
+        /// Whether the bodies slide: bristles act in time only then.
+        pub slides: bool,
     }
+}
+
+/// Whether there are derivatives of eigenvalues by a bristle.
+fn in_time(slides: bool) -> fn(&[usize], f64) -> Derivative {
+    if slides { |_, _| Derivative::Zero } else { |_, _| Derivative::Exists }
 }
 
 declare! {

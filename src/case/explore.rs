@@ -204,7 +204,10 @@ mod tests {
         let error =
             parse("[sweep.v]\nparameter = \"contact.belt.sliding_velocity\"\nfrom = 0\nto = 2\nlog = true\n");
         let error = error.unwrap_err().to_string();
-        assert!(error.contains("no state at rest") && error.contains("equal ratios"), "{error}");
+        assert!(
+            error.contains("a contact that pulls does not stick") && error.contains("equal ratios"),
+            "{error}"
+        );
         let without = CASE.replace("[cea]\nband = [0, \"1 Hz\"]", "");
         let error = Case::parse("c", &format!("{without}\n{SWEEP}"), ".".into()).unwrap_err().to_string();
         assert!(error.contains("no [cea]"), "{error}");

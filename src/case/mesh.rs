@@ -50,7 +50,7 @@ fn element_size(default: f64) -> crate::schema::Field<f64> {
     key::quantity(LENGTH)
         .positive()
         .or(default)
-        .derivative(|_| Derivative::None("an element size, which is no property of the machine"))
+        .derivative(|_, _| Derivative::None("an element size, which is no property of the machine"))
 }
 
 declare! {

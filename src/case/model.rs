@@ -179,7 +179,7 @@ declare! {
         /// mean size of the faces of `to`.
         pub within: Option<f64> = key::quantity(LENGTH)
             .positive()
-            .derivative(|_| Derivative::None("it only decides which nodes are joined"))
+            .derivative(|_, _| Derivative::None("it only decides which nodes are joined"))
             .optional(),
     }
 }
@@ -277,7 +277,7 @@ declare! {
         /// what is about complex modes; in a frequency response twice the upper end of its band; elsewhere no limit.
         pub modal_below: Option<f64> = key::quantity(FREQUENCY)
             .positive()
-            .derivative(|_| Derivative::None("it decides which modes are damped"))
+            .derivative(|_, _| Derivative::None("it decides which modes are damped"))
             .optional(),
         /// ζ of single modes instead: (frequency near the mode \[Hz\], ζ).
         pub modal_ratios: Vec<[f64; 2]> = key::pairs([FREQUENCY, NUMBER])
@@ -285,7 +285,7 @@ declare! {
                 rows.iter().all(|[hz, ratio]| *hz >= 0.0 && (0.0..1.0).contains(ratio))
             })
             .or(Vec::new())
-            .derivative(|at| match at {
+            .derivative(|at, _| match at {
                 [_, 0] => Derivative::None("it names a mode"),
                 _ => Derivative::Exists,
             }),

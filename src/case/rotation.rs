@@ -26,7 +26,7 @@ declare! {
     }
 }
 
-fn given_by_the_body(_: &[usize]) -> Derivative {
+fn given_by_the_body(_: &[usize], _: f64) -> Derivative {
     Derivative::None("the axis is that of the body")
 }
 

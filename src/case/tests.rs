@@ -1,7 +1,7 @@
 use super::*;
 use crate::bounds::{Origin::*, within};
 use crate::contact::Exponential;
-use crate::schema::{Content, DescribedTable, describe, json_schema, key_reference};
+use crate::schema::{Content, Derivative, DescribedTable, describe, json_schema, key_reference};
 
 const RIG: &str = r#"
 title = "A small rig"
@@ -155,10 +155,37 @@ fn a_rotation_stands_in_place_of_a_sliding_velocity() {
     assert!(direction.contains("`contact.rim.sliding_direction`: found an unknown key"), "{direction}");
     let stroke = fault(&format!("{rotation}\nstroke = 0.1"));
     assert!(stroke.contains("keeps its place"), "{stroke}");
-    let still = fault("rotation = { axis = [1, 0, 0], speed = 0 }");
-    assert!(still.contains("`contact.rim.rotation.speed`") && still.contains("no state at rest"), "{still}");
     let nothing = fault("");
     assert!(nothing.contains("`contact.rim.sliding_velocity`"), "{nothing}");
+}
+
+/// A contact that does not slide sticks elastically: that needs a stiffness, and laws that stick.
+#[test]
+fn a_contact_at_rest_sticks() {
+    let still = RIG.replace("sliding_velocity = \"0.1 m/s\"", "sliding_velocity = 0");
+    let case = parse(&still).unwrap();
+    assert!(case.contact["rim"].rests() && case.contact["rim"].bristle.is_none());
+    assert!(matches!(
+        case.parameter("contact.rim.sliding_velocity").unwrap().derivative,
+        Derivative::None(_)
+    ));
+    let bristle = "[contact.rim.bristle]\nstiffness = \"1 GN/m^2\"\n";
+    for (text, exists) in [(RIG, false), (&still, true)] {
+        let case = parse(&format!("{text}{bristle}")).unwrap();
+        let of = case.parameter("contact.rim.bristle.stiffness").unwrap().derivative;
+        assert!(matches!(of, Derivative::Exists) == exists && matches!(of, Derivative::Zero) != exists);
+    }
+    for (from, to, expected) in [
+        ("stiffness = \"10 GN/m^2\", cubic", "stiffness = 0, cubic", "`contact.rim.bristle`"),
+        ("cubic = 1e18 }", "cubic = 1e18, unilateral = false }", "does not stick"),
+        ("mu0 = 0.3", "regularisation = 0.1, mu0 = 0.3", "friction.regularisation"),
+        ("sliding_velocity = 0", "sliding_velocity = 0\nstroke = \"1 mm\"", "none where nothing slides"),
+    ] {
+        let faulty = still.replace(from, to);
+        assert!(faulty != still, "{from}");
+        let error = parse(&faulty).unwrap_err().to_string();
+        assert!(error.contains(expected) && !error.contains("faults"), "{expected} not in\n{error}");
+    }
 }
 
 #[test]
@@ -168,18 +195,18 @@ fn every_fault_is_found_at_once_with_its_line() {
         .replace("\"10 mm\"\n\n[bar", "\"-10 mm\"\n\n[bar")
         .replace("poissons_ratio = 0.3", "poissons_ratio = 0.5")
         .replace("diameter = \"20 mm\"", "diameter = \"20 kg\"")
-        .replace("sliding_velocity = \"0.1 m/s\"", "sliding_velocity = 0")
+        .replace("sliding_velocity = \"0.1 m/s\"", "sliding_velocity = \"0.1 m\"")
         .replace("below = \"3 kHz\"", "below = true")
         .replace("material = \"steel\"\ndiameter", "material = \"stel\"\ndiameter");
     let error = parse(&text).unwrap_err().to_string();
     for expected in [
         "8 faults",
+        "contact.rim.sliding_velocity",
         "rig.toml:18 `shell.disc.thicknes`",
         "Did you mean `thickness`?",
         "-0.01; expected a value above zero",
         "below 0.5",
         "another dimension",
-        "steady sliding has no state at rest",
         "found true; expected a frequency",
         "bar.bar.material",
         "Did you mean \"steel\"?",

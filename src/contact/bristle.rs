@@ -3,7 +3,7 @@
 use super::coefficient::FrictionCoefficient;
 use super::normal::NormalLaw;
 use super::slip::Slip;
-use crate::system::{ContactMotion, SlipAnswer, SlipStep};
+use crate::system::{ContactForces, ContactMotion, ContactTangent, SlipAnswer, SlipStep};
 
 /// Bristles between the bodies, bent by **s** along the face, with stiffness k_t and damping c_t:
 ///
@@ -52,7 +52,7 @@ impl Bristle {
         let load = weight * pressure;
         if size <= friction.mu(0.0, pressure).value * load {
             answer.forces.friction = trial;
-            answer.by_slid = [[bend, 0.0], [0.0, bend]];
+            answer.tangent.by_slid = along_the_face([[bend, 0.0], [0.0, bend]]);
             answer.bristle = [0, 1].map(|i| since.bristle[i] + since.slid[i]);
             answer.sticks = true;
             return answer;
@@ -84,12 +84,61 @@ impl Bristle {
                 // `late` changes with its own Δ, and as F* turns.
                 let turned = (excess[j] - slip.late * towards[j]) * bend / size;
                 let along = by_size * bend * towards[j] + by_late * (turned - towards[j] / since.duration);
-                answer.by_slid[i][j] = towards[i] * along + force / size * bend * across;
+                answer.tangent.by_slid[1 + i][j] = towards[i] * along + force / size * bend * across;
                 answer.tangent.by_slip_velocity[1 + i][j] = by_late * towards[i] * towards[j];
             }
         }
         answer
     }
+}
+
+impl Bristle {
+    /// At rest: **F** = k_t Δ up to μ(0) N, and that along Δ beyond, for a load that has grown from nothing in one proportion (the deformation
+    /// theory of plasticity).
+    pub(super) fn hold(
+        &self,
+        normal: &NormalLaw,
+        friction: &dyn FrictionCoefficient,
+        (penetration, slid): (f64, [f64; 2]),
+        weight: f64,
+    ) -> (ContactForces, ContactTangent) {
+        let unit = normal.force(penetration, 0.0);
+        let mut forces = ContactForces { normal: weight * unit.value, friction: [0.0; 2] };
+        let mut tangent = ContactTangent::default();
+        tangent.by_penetration[0] = weight * unit.by_penetration;
+        tangent.by_penetration_rate[0] = weight * unit.by_penetration_rate;
+        if unit.value <= 0.0 {
+            return (forces, tangent);
+        }
+        let bend = weight * self.stiffness;
+        let trial = slid.map(|s| bend * s);
+        let size = trial[0].hypot(trial[1]);
+        let mu = friction.mu(0.0, unit.value);
+        let most = mu.value * forces.normal;
+        if size <= most {
+            forces.friction = trial;
+            tangent.by_slid = along_the_face([[bend, 0.0], [0.0, bend]]);
+            let dashpot = weight * self.damping;
+            tangent.by_slip_velocity = along_the_face([[dashpot, 0.0], [0.0, dashpot]]);
+            return (forces, tangent);
+        }
+        let towards = trial.map(|f| f / size);
+        for i in 0..2 {
+            forces.friction[i] = most * towards[i];
+            tangent.by_penetration[1 + i] =
+                (mu.value + unit.value * mu.by_pressure) * tangent.by_penetration[0] * towards[i];
+            for j in 0..2 {
+                let across = if i == j { 1.0 } else { 0.0 } - towards[i] * towards[j];
+                tangent.by_slid[1 + i][j] = most / size * bend * across;
+            }
+        }
+        (forces, tangent)
+    }
+}
+
+/// Derivatives of (N, F₁, F₂) from those of (F₁, F₂).
+fn along_the_face([first, second]: [[f64; 2]; 2]) -> [[f64; 2]; 3] {
+    [[0.0; 2], first, second]
 }
 
 #[cfg(test)]
@@ -219,7 +268,7 @@ mod tests {
                             1 => answer.tangent.by_penetration_rate[row],
                             2 | 3 => answer.tangent.by_slip_velocity[row][input - 2],
                             _ if row == 0 => 0.0,
-                            _ => answer.by_slid[row - 1][input - 4],
+                            _ => answer.tangent.by_slid[row][input - 4],
                         };
                         let difference = (plus[row] - minus[row]) / (2.0 * h);
                         let scale = answer.forces.normal * [1e5, 1.0, 1.0, 1.0, 1e5, 1e5][input];
@@ -232,5 +281,46 @@ mod tests {
             }
         }
         assert!(stuck > 0 && stuck < 9, "{stuck}");
+    }
+
+    #[test]
+    fn jacobian_at_rest_agrees_with_differences_below_and_beyond_the_limit() {
+        let (weight, mut beyond) = (0.7, 0);
+        for law in [law(Coulomb { mu0: 0.4 }), law(Hyperbolic { mu_static: 0.7, decline: 3.0 })] {
+            for slid in [[1e-6, -2e-6], [8e-5, 3e-5], [-1e-4, 2e-4]] {
+                let of = |x: [f64; 3]| law.hold(x[0], [x[1], x[2]], weight);
+                let at = [1e-5, slid[0], slid[1]];
+                let (forces, tangent) = of(at);
+                let size = forces.friction[0].hypot(forces.friction[1]);
+                let most = law.friction.mu(0.0, forces.normal / weight).value * forces.normal;
+                assert!(within(size / most - 1.0, 1e-12, RoundOff));
+                beyond += usize::from(tangent.by_penetration[1] != 0.0);
+                for input in 0..3 {
+                    let h = [1e-10, 1e-11, 1e-11][input];
+                    let moved = |s: f64| {
+                        let mut x = at;
+                        x[input] += s * h;
+                        let forces = of(x).0;
+                        [forces.normal, forces.friction[0], forces.friction[1]]
+                    };
+                    let (plus, minus) = (moved(1.0), moved(-1.0));
+                    for row in 0..3 {
+                        let exact = match input {
+                            0 => tangent.by_penetration[row],
+                            k => tangent.by_slid[row][k - 1],
+                        };
+                        let difference = (plus[row] - minus[row]) / (2.0 * h);
+                        let scale = forces.normal * 1e5;
+                        assert!(
+                            within((exact - difference).abs(), 1e-5 * (exact.abs() + scale), Reference),
+                            "{law:?} {slid:?} row {row}, input {input}: {exact} {difference}"
+                        );
+                    }
+                }
+            }
+        }
+        assert!((1..6).contains(&beyond), "{beyond}");
+        // An open contact does not rub.
+        assert_eq!(law(Coulomb { mu0: 0.4 }).hold(-1e-6, [1e-5, 0.0], weight).0.friction, [0.0; 2]);
     }
 }

@@ -97,6 +97,11 @@ impl ContactLaw for SlidingLaw {
         SlipAnswer { forces, tangent, ..SlipAnswer::default() }
     }
 
+    fn hold(&self, penetration: f64, slid: [f64; 2], weight: f64) -> (ContactForces, ContactTangent) {
+        let bristle = self.bristle.unwrap_or(Bristle { stiffness: 0.0, damping: 0.0 });
+        bristle.hold(&self.normal, &*self.friction, (penetration, slid), weight)
+    }
+
     fn at_rest(&self) -> FrictionAtRest {
         match (self.sense, self.bristle) {
             (FrictionSense::AgainstSliding, _) => FrictionAtRest::AsInSlip,

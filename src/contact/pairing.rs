@@ -86,13 +86,13 @@ pub fn pair_surfaces(surfaces: &Surfaces<'_>, reduce: &Reduce<'_>) -> Result<Vec
 fn tangent(surfaces: &Surfaces<'_>, point: &Candidate<'_>) -> Result<(Vector, f64)> {
     surfaces.sliding.tangent(point.foot.normal, point.position).ok_or_else(|| {
         let key = match surfaces.sliding {
-            Sliding::Along(_) => "sliding_direction",
+            Sliding::Along(_) | Sliding::AtRest(_) => "sliding_direction",
             Sliding::About { .. } => "rotation.axis",
         };
         let place = format!("`contact.{}.{key}`", surfaces.name);
         let way = components(surfaces.sliding.at(point.position));
         let found = match surfaces.sliding {
-            Sliding::Along(_) => format!("{way}, along the counter-body's normal"),
+            Sliding::Along(_) | Sliding::AtRest(_) => format!("{way}, along the counter-body's normal"),
             Sliding::About { .. } => format!(
                 "a motion along {way} at {} m, along the counter-body's normal",
                 components(point.position)

@@ -11,6 +11,8 @@ const ALONG: f64 = 0.1;
 pub enum Sliding {
     /// Along one direction, of whatever length.
     Along([f64; 3]),
+    /// Not at all; t₁ is along a direction, of whatever length, where the face lets it be.
+    AtRest([f64; 3]),
     /// About an axis of a direction e, of whatever length, right-handed.
     About {
         /// e.
@@ -24,7 +26,7 @@ impl Sliding {
     /// The direction of motion at x: as given, or e × (x − x₀) with the unit vector e, whose length is the distance from the axis \[m\].
     pub fn at(&self, x: [f64; 3]) -> [f64; 3] {
         match self {
-            Sliding::Along(direction) => *direction,
+            Sliding::Along(direction) | Sliding::AtRest(direction) => *direction,
             Sliding::About { axis, point } => cross(unit(*axis).unwrap_or_default(), subtract(x, *point)),
         }
     }
@@ -38,8 +40,10 @@ impl Sliding {
         match self {
             // On the axis nothing slides, and any direction will do.
             Sliding::About { .. } if length == 0.0 => Some((across(normal), 0.0)),
+            // Nothing slides, and any direction will do.
+            Sliding::AtRest(_) if part.is_nan() || part <= ALONG * length => Some((across(normal), 0.0)),
             _ if part.is_nan() || part <= ALONG * length => None,
-            Sliding::Along(_) => Some((scale(1.0 / part, along), 1.0)),
+            Sliding::Along(_) | Sliding::AtRest(_) => Some((scale(1.0 / part, along), 1.0)),
             Sliding::About { .. } => Some((scale(1.0 / part, along), part)),
         }
     }
@@ -47,7 +51,7 @@ impl Sliding {
     /// The mean distance of points from the axis by their weights \[m\], V/Ω; 1 along one direction.
     pub fn mean_distance(&self, points: &[ContactPoint]) -> f64 {
         match self {
-            Sliding::Along(_) => 1.0,
+            Sliding::Along(_) | Sliding::AtRest(_) => 1.0,
             Sliding::About { .. } => {
                 let distance = |point: &ContactPoint| {
                     let way = self.at(point.position);
@@ -88,5 +92,11 @@ mod tests {
         assert!(within((speed - 1.6).abs(), 1e-15, RoundOff));
         assert!(within((t1[1] - 0.8).abs() + (t1[2] + 0.6).abs(), 1e-15, RoundOff));
         assert_eq!(Sliding::Along([3.0, 0.0, 4.0]).tangent(up, [9.0; 3]), Some(([1.0, 0.0, 0.0], 1.0)));
+        // Faces that nothing slides on may look any way.
+        let resting = Sliding::AtRest([0.0, 0.0, 2.0]);
+        assert_eq!(resting.tangent([0.0, 1.0, 0.0], [9.0; 3]), Some(([0.0, 0.0, 1.0], 1.0)));
+        let (t1, speed) = resting.tangent(up, [9.0; 3]).unwrap();
+        assert!(speed == 0.0 && dot(t1, t1) == 1.0 && dot(t1, up) == 0.0);
+        assert_eq!(Sliding::Along([0.0, 0.0, 2.0]).tangent(up, [9.0; 3]), None);
     }
 }

@@ -32,7 +32,7 @@ pub struct InterfaceTerm {
 /// Origin of an entry, by which the growth budget sorts it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TermOrigin {
-    /// (g, g): stiffness and damping of the normal motion.
+    /// (g, g): stiffness and damping of the normal motion; of points that stick, along the face, too.
     Normal,
     /// (t₁, t₁): friction that falls, or rises, with the slip velocity.
     Falling,
@@ -147,10 +147,12 @@ fn imported_terms(rest: &Coupling, first: usize) -> impl Iterator<Item = Interfa
 
 /// The entries of one contact point whose g, t₁, t₂ are the directions from `first` on.
 fn contact_terms(block: &ContactBlock, first: usize) -> impl Iterator<Item = InterfaceTerm> + '_ {
+    let sticks = block.stiffness[1][1] != 0.0;
     entries(3).filter_map(move |(a, b)| {
         let (stiffness, damping) = (block.stiffness[a][b], block.damping[a][b]);
         let origin = match (a, b) {
             (0, 0) => TermOrigin::Normal,
+            _ if sticks => TermOrigin::Normal,
             (_, 0) | (0, _) => TermOrigin::Coupling,
             (1, 1) => TermOrigin::Falling,
             _ => TermOrigin::Transverse,

@@ -5,15 +5,17 @@
 //! \[ K + Σ (g N′ − t F′) gᵀ   Σ (g N′ − t F′) \] \[du\]   \[ r + Σ (g N′ − t F′) c \]
 //! \[ Σ N′ gᵀ                  Σ N′            \] \[da\] = \[ L − ΣN + Σ N′ c       \],  dδ = da + gᵀdu − c,
 //!
-//! with c = δ − (a − gap + gᵀu), which is rounding but at a start. K has here the parts that are not symmetric, too. GMRES solves it,
-//! preconditioned by the symmetric \[A b; bᵀ e\], A = K + Σ d g gᵀ, b = Σ d g, e = Σ d, which differs from it by friction, and by
+//! with c = δ − (a − gap + gᵀu), which is rounding but at a start. K has here the parts that are not symmetric, too, and the springs t k_t tᵀ of
+//! points that stick, whose friction depends on t₁ᵀu and t₂ᵀu. GMRES solves it, preconditioned by the symmetric \[A b; bᵀ e\], A = K + Σ d g gᵀ, b = Σ d g, e = Σ d, which differs from it by friction, and by
 //! the points that have opened or closed since A was factorised.
 
 use super::SteadySliding;
 use super::condensed::closed_factor;
 use super::linear::{add_reaction, directions, elastic_force};
 use super::load_steps::Newton;
-use super::point_laws::{Fraction, Law, PointLaws, State, are_finite, force_change, largest_force};
+use super::point_laws::{
+    Fraction, Law, PointLaws, State, are_finite, force_change, largest_force, norm, slid,
+};
 use crate::error::Result;
 use crate::linalg::gmres::gmres;
 use crate::linalg::lu::Lu;
@@ -77,7 +79,12 @@ impl<'a> Assembled<'a> {
         let own = laws.iter().zip(&self.springs);
         let springs: Vec<f64> = own.map(|((_, t), closed)| t.by_penetration[0].max(OPEN * closed)).collect();
         let normals = springs.iter().zip(&contact.points).map(|(d, (.., point))| (*d, &point.normal));
-        let closed = add_scaled(&[(1.0, k), (1.0, &sum_of_squares(k.nrows(), normals))]);
+        let tangents = laws.iter().zip(&contact.points).flat_map(|((_, tangent), (.., point))| {
+            let [_, along, across] = tangent.springs();
+            [(along, &point.tangents[0]), (across, &point.tangents[1])]
+        });
+        let closed = normals.chain(tangents.filter(|(d, _)| *d > 0.0));
+        let closed = add_scaled(&[(1.0, k), (1.0, &sum_of_squares(k.nrows(), closed))]);
         let factor = self.engine.factorize(&closed).ok()?;
         Some(Arc::new(Preconditioner::new(factor, contact, &springs)))
     }
@@ -163,6 +170,27 @@ impl<'a> WholeProblem<'a> {
         }
     }
 
+    /// −t ∂F/∂Δ Δ with Δ = −tᵀu of the points that stick, on the forces.
+    fn hold(&self, laws: &[Law], u: &[f64], image: &mut [f64]) {
+        for ((_, pair, point), (_, tangent)) in self.contact.points.iter().zip(laws) {
+            if pair.sticks() {
+                let slid = slid(pair, point, u);
+                for (i, t) in point.tangents.iter().enumerate() {
+                    let [along, across] = tangent.by_slid[1 + i];
+                    t.add_to(-(along * slid[0] + across * slid[1]), &mut image[..u.len()]);
+                }
+            }
+        }
+    }
+
+    /// The length of a change \[m\]: of the motions of the points and of the approaches.
+    fn length(&self, change: &State) -> f64 {
+        let slides = self.contact.points.iter().filter(|(_, pair, _)| pair.sticks());
+        let slid: Vec<f64> =
+            slides.flat_map(|(_, pair, point)| slid(pair, point, &change.displacement)).collect();
+        norm(&[self.contact.length(&change.penetration, &change.approach), norm(&slid)])
+    }
+
     /// The motions a + gᵀu of the points.
     fn motions<'s>(&'s self, x: &'s [f64]) -> impl Iterator<Item = f64> + 's {
         let (u, a) = x.split_at(self.load.len());
@@ -189,7 +217,7 @@ impl<'a> WholeProblem<'a> {
 
     /// The Newton correction of a state for its residual r = f − K u − r_c; `None` where there is none.
     pub(super) fn correction(&self, state: &State, r: &[f64]) -> Option<State> {
-        self.step(state, r.to_vec(), &self.contact.respond(&state.penetration, 1.0), 1.0)
+        self.step(state, r.to_vec(), &self.contact.respond(&state.penetration, &state.displacement, 1.0), 1.0)
     }
 
     fn step(&self, state: &State, r: Vec<f64>, laws: &[Law], fraction: Fraction) -> Option<State> {
@@ -199,6 +227,7 @@ impl<'a> WholeProblem<'a> {
             let mut image = elastic_force(self.stiffness, self.structure.coupling, u);
             image.resize(x.len(), 0.0);
             self.push(laws, self.motions(x), &mut image);
+            self.hold(laws, u, &mut image);
             image
         };
         let solved = |most: usize| {
@@ -217,14 +246,14 @@ impl<'a> WholeProblem<'a> {
 
     /// The length of the step that the preconditioner alone gives for the residual of a state \[m\].
     fn distance(&self, state: &State, fraction: Fraction) -> f64 {
-        let laws = self.contact.respond(&state.penetration, fraction);
+        let laws = self.contact.respond(&state.penetration, &state.displacement, fraction);
         if !are_finite(&laws) {
             return f64::INFINITY;
         }
         let rest = self.rest(&state.displacement, &laws, fraction);
         let step = self.latest.borrow().solve(&self.rhs(state, rest, &laws, fraction));
         let change = self.change(state, step);
-        self.contact.length(&change.penetration, &change.approach)
+        self.length(&change)
     }
 }
 
@@ -255,7 +284,7 @@ impl Newton for WholeProblem<'_> {
         let contact = &self.contact;
         let (mut length, mut last) = (f64::INFINITY, f64::INFINITY);
         for iteration in 1..=self.max_iterations {
-            let laws = contact.respond(&state.penetration, fraction);
+            let laws = contact.respond(&state.penetration, &state.displacement, fraction);
             if !are_finite(&laws) {
                 return Err(format!("at iteration {iteration} a force of the contact is not finite"));
             }
@@ -263,7 +292,7 @@ impl Newton for WholeProblem<'_> {
             let Some(step) = self.step(&state, rest, &laws, fraction) else {
                 return Err(format!("at iteration {iteration} the contact leaves a motion free"));
             };
-            length = contact.length(&step.penetration, &step.approach);
+            length = self.length(&step);
             if !length.is_finite() {
                 return Err(format!("at iteration {iteration} the step is not finite"));
             }

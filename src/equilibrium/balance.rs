@@ -2,7 +2,7 @@
 
 use super::PointState;
 use super::linear::{add_reaction, elastic_force};
-use super::point_laws::respond;
+use super::point_laws::{respond, slid};
 use crate::linalg::SparseMatrix;
 use crate::system::{ContactPair, ContactPoint, System};
 
@@ -24,11 +24,16 @@ pub(super) fn residual(
     (r, size)
 }
 
-/// The law of every point at its penetration.
-pub(super) fn states(pairs: &[ContactPair], penetrations: &[f64]) -> Vec<PointState> {
+/// The law of every point at its penetration and the displacement `u`, with the derivatives for small motions about that: where a point
+/// sticks, or has slid to where it stands, those of its elastic deflection.
+pub(super) fn states(pairs: &[ContactPair], penetrations: &[f64], u: &[f64]) -> Vec<PointState> {
     let points = pairs.iter().flat_map(|pair| pair.points.iter().map(move |p| (pair, p)));
     let at = |((pair, point), penetration): ((&ContactPair, &ContactPoint), &f64)| {
-        let (forces, tangent) = respond(pair, point, *penetration);
+        let slid = slid(pair, point, u);
+        let (forces, mut tangent) = respond(pair, point, *penetration, slid);
+        if pair.sticks() {
+            tangent = respond(pair, point, *penetration, [0.0; 2]).1;
+        }
         PointState { penetration: *penetration, forces, tangent }
     };
     points.zip(penetrations).map(at).collect()

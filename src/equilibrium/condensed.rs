@@ -1,12 +1,13 @@
 //! Equilibrium condensed to the contact: the static compliance seen from the contact points.
 
 use super::linear::directions;
+use super::point_laws::respond;
 use crate::error::{Error, Result};
-use crate::linalg::SparseMatrix;
 use crate::linalg::SymmetricFactor;
 use crate::linalg::factor::is_singular;
 use crate::linalg::sparse::{add_scaled, is_unresisted, sum_of_squares};
-use crate::system::{ContactMotion, ContactPoint, System};
+use crate::linalg::{SparseMatrix, SparseVector};
+use crate::system::{ContactPoint, System};
 use faer::Mat;
 
 /// The structure with its contact springs closed, A = K + Σ d g gᵀ, factorised, and what it answers to a unit force
@@ -66,7 +67,7 @@ impl Condensed {
     }
 }
 
-/// The factors of A = K + Σ d g gᵀ, in which every contact point is closed, and the d of the points.
+/// The factors of A = K + Σ d g gᵀ, in which every contact point is closed, and the d of the points; along t₁ and t₂, too, where they stick.
 ///
 /// # Errors
 /// A rigid motion that not even the closed contact resists.
@@ -74,7 +75,8 @@ pub(super) fn closed_factor(
     system: &System,
     k: &SparseMatrix,
 ) -> Result<(Box<dyn SymmetricFactor>, Vec<f64>)> {
-    let (a, closed) = closed_stiffness(system, k);
+    let (a, springs) = closed_stiffness(system, k);
+    let closed = springs.iter().take(system.points().count()).map(|(d, _)| *d).collect();
     let factor = system.structure.engine.factorize(&a).map_err(|error| match is_singular(&error) {
         true => nothing_holds(error.to_string().trim_end_matches('.')),
         // Memory that does not suffice has another remedy.
@@ -84,16 +86,29 @@ pub(super) fn closed_factor(
     Ok((factor, closed))
 }
 
-/// A, and the d of the points.
-pub(crate) fn closed_stiffness(system: &System, k: &SparseMatrix) -> (SparseMatrix, Vec<f64>) {
-    let closed = closed_springs(system, k);
-    let springs = system.points().zip(&closed).map(|((_, point), d)| (*d, &point.normal));
-    (add_scaled(&[(1.0, k), (1.0, &sum_of_squares(system.n_dofs(), springs))]), closed)
+/// A, and its springs.
+pub(crate) fn closed_stiffness<'a>(system: &'a System, k: &SparseMatrix) -> (SparseMatrix, Vec<Spring<'a>>) {
+    let springs = closed_springs(system, k);
+    let sum = sum_of_squares(system.n_dofs(), springs.iter().copied());
+    (add_scaled(&[(1.0, k), (1.0, &sum)]), springs)
 }
 
-/// The stiffness of each contact point where it is closed, on a structure with stiffness K.
-pub fn closed_springs(system: &System, k: &SparseMatrix) -> Vec<f64> {
-    system.points().map(|(pair, point)| spring(pair, point, k)).collect()
+/// A stiffness d \[N/m\] along a direction.
+pub type Spring<'a> = (f64, &'a SparseVector);
+
+/// The springs of the contact points where they are closed, on a structure with stiffness K: one along each normal, in the order of the
+/// points, then those along the tangents of points that stick.
+pub fn closed_springs<'a>(system: &'a System, k: &SparseMatrix) -> Vec<Spring<'a>> {
+    let normals = system.points().map(|(pair, point)| {
+        let law = respond(pair, point, FIRST_TOUCH, [0.0; 2]).1.by_penetration[0];
+        (spring(&point.normal, law, k), &point.normal)
+    });
+    let sticking = system.points().filter(|(pair, _)| pair.sticks());
+    let tangents = sticking.flat_map(|(pair, point)| {
+        let law = respond(pair, point, FIRST_TOUCH, [0.0; 2]).1.by_slid;
+        [0, 1].map(|c| (spring(&point.tangents[c], law[1 + c][c], k), &point.tangents[c]))
+    });
+    normals.chain(tangents).collect()
 }
 
 /// Xᵀ f.
@@ -102,21 +117,18 @@ fn answers(responses: &Mat<f64>, load: &[f64]) -> Vec<f64> {
     (0..responses.ncols()).map(dot).collect()
 }
 
-/// The stiffness that represents a closed point: that of its law at first touch, but no stiffer than the structure
+/// The penetration at first touch \[m\].
+const FIRST_TOUCH: f64 = 1e-12;
+
+/// The stiffness that represents a closed point along a direction: that of its `law` at first touch, but no stiffer than the structure
 /// it acts on (A would lose digits), and not nothing (a purely cubic law).
-fn spring(pair: &crate::system::ContactPair, point: &ContactPoint, k: &SparseMatrix) -> f64 {
-    let norm: f64 = point.normal.values().iter().map(|v| v * v).sum();
+fn spring(direction: &SparseVector, law: f64, k: &SparseMatrix) -> f64 {
+    let norm: f64 = direction.values().iter().map(|v| v * v).sum();
     if norm == 0.0 {
         return 0.0;
     }
     let diagonal = |i: usize| k.get(i, i).copied().unwrap_or(0.0);
-    let structure = point.normal.iter().map(|(i, v)| v * v * diagonal(i)).sum::<f64>() / (norm * norm);
-    let motion = ContactMotion {
-        penetration: 1e-12,
-        penetration_rate: 0.0,
-        slip_velocity: [pair.velocity_at(point), 0.0],
-    };
-    let law = pair.law.respond(&motion, point.weight).1.by_penetration[0];
+    let structure = direction.iter().map(|(i, v)| v * v * diagonal(i)).sum::<f64>() / (norm * norm);
     match (law > 0.0, structure > 0.0) {
         (true, true) => law.min(structure).max(1e-6 * structure),
         (true, false) => law,

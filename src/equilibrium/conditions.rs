@@ -3,18 +3,20 @@
 use super::{PointState, SteadyOptions};
 use crate::error::{Error, Fault, Faults, Result};
 use crate::numbers::significant;
-use crate::system::{Closing, ContactPair};
+use crate::system::{Closing, ContactPair, FrictionAtRest};
 
 /// Sliding velocities, loads and points with which there can be a steady state, on `n` degrees of freedom.
 pub(super) fn check_input(pairs: &[ContactPair], load: &[f64], n: usize) -> Result<()> {
     let mut faults = Faults::new();
     for pair in pairs {
         let v = pair.sliding_velocity;
-        if !(v.is_finite() && v != 0.0) {
+        let elastic = pair.law.at_rest() == FrictionAtRest::Elastic;
+        if !(v.is_finite() && (v != 0.0 || elastic)) {
             let place = format!("contact `{}`, sliding velocity", pair.name);
+            let expected = "a velocity other than zero, or a contact that sticks elastically (`bristle`)";
             faults.push(
-                Fault::new(place, format!("{v} m/s"), "a velocity other than zero")
-                    .with_help("Steady sliding needs one: friction at rest can have any value up to μN"),
+                Fault::new(place, format!("{v} m/s"), expected)
+                    .with_help("Friction that is set-valued at rest can have any value up to μN"),
             );
         }
         let (place, bad) = match pair.closing {

@@ -23,7 +23,7 @@ pub struct LinearContact {
 pub struct ContactBlock {
     /// Index in [`System::points`].
     pub point: usize,
-    /// k \[N/m\]: not symmetric, as −∂F₁/∂δ = −μN′ has no counterpart.
+    /// k \[N/m\]: not symmetric, as −∂F₁/∂δ = −μN′ has no counterpart. What a point slides is (−t₁ᵀu, −t₂ᵀu).
     pub stiffness: [[f64; 3]; 3],
     /// c \[N s/m\]: the slip velocity is (V − t₁ᵀu̇, −t₂ᵀu̇), which turns the signs of its columns.
     pub damping: [[f64; 3]; 3],
@@ -38,8 +38,10 @@ impl ContactBlock {
             let sign = if row == 0 { 1.0 } else { -1.0 };
             stiffness[row][0] = sign * t.by_penetration[row];
             damping[row][0] = sign * t.by_penetration_rate[row];
-            damping[row][1] = -sign * t.by_slip_velocity[row][0];
-            damping[row][2] = -sign * t.by_slip_velocity[row][1];
+            for k in 0..2 {
+                stiffness[row][1 + k] = -sign * t.by_slid[row][k];
+                damping[row][1 + k] = -sign * t.by_slip_velocity[row][k];
+            }
         }
         ContactBlock { point, stiffness, damping }
     }
@@ -105,15 +107,16 @@ pub fn tangent_stiffness<'a>(system: &'a System, displacement: &[f64]) -> Result
     Ok(Cow::Owned(add_scaled(&[(1.0, &system.structure.stiffness), (1.0, &geometric)])))
 }
 
-/// The structure at steady sliding with its contact closed and frictionless: K (+ K_σ) + Σ ∂N/∂δ g gᵀ, for real modes
-/// of the rig in contact. Those modes need an inertia count of the closed structure, so here, and only here, the
-/// contact's normal springs are added to a copy of K.
+/// The structure at steady sliding with its contact closed and frictionless: K (+ K_σ) + Σ ∂N/∂δ g gᵀ, with the springs of points that
+/// stick, for real modes of the rig in contact. Those modes need an inertia count of the closed structure, so here, and only here, the
+/// springs of the contact are added to a copy of K.
 pub fn closed_structure(system: &System, steady: &SteadySliding) -> Result<Structure> {
     let stiffness = tangent_stiffness(system, &steady.displacement)?;
-    let closed =
-        system.points().zip(&steady.points).filter(|(_, state)| state.tangent.by_penetration[0] != 0.0);
-    let springs = closed.map(|((_, point), state)| (state.tangent.by_penetration[0], &point.normal));
-    let springs = sum_of_squares(system.n_dofs(), springs);
+    let springs = system.points().zip(&steady.points).flat_map(|((_, point), state)| {
+        let own = state.tangent.springs();
+        [0, 1, 2].map(|c| (own[c], directions(point)[c]))
+    });
+    let springs = sum_of_squares(system.n_dofs(), springs.filter(|(k, _)| *k != 0.0));
     let stiffness = add_scaled(&[(1.0, stiffness.as_ref()), (1.0, &springs)]);
     Ok(Structure { stiffness: stiffness.into(), ..system.structure.clone() })
 }
@@ -124,6 +127,12 @@ pub fn contact_force(system: &System, approach: &[f64], displacement: &[f64], ve
     for (pair, approach) in system.pairs.iter().zip(approach) {
         for point in &*pair.points {
             let [g, t1, t2] = directions(point);
+            if pair.sticks() {
+                let slid = [t1, t2].map(|t| -t.dot(displacement));
+                let penetration = approach - point.gap + g.dot(displacement);
+                add_reaction(point, &pair.law.hold(penetration, slid, point.weight).0, &mut total);
+                continue;
+            }
             let motion = ContactMotion {
                 penetration: approach - point.gap + g.dot(displacement),
                 penetration_rate: g.dot(velocity),

@@ -19,9 +19,9 @@ mod steady;
 #[cfg(test)]
 mod tests;
 
-pub use condensed::closed_springs;
 #[cfg(test)]
 pub(crate) use condensed::closed_stiffness;
+pub use condensed::{Spring, closed_springs};
 pub use linear::{
     ContactBlock, LinearContact, closed_structure, contact_force, directions, linearize, linearize_points,
     tangent_stiffness,

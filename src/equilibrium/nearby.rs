@@ -63,7 +63,12 @@ impl<'a> Nearby<'a> {
         let mut last = f64::INFINITY;
         for iterations in 1..=STEPS {
             let k = tangent_stiffness(other, &state.displacement)?;
-            let (r, _) = residual(other, &k, &state.displacement, &states(&other.pairs, &state.penetration));
+            let (r, _) = residual(
+                other,
+                &k,
+                &state.displacement,
+                &states(&other.pairs, &state.penetration, &state.displacement),
+            );
             let Some(correction) = problem.correction(&state, &r) else { return Ok(None) };
             let size = norm(&state.displacement).max(norm(&state.approach)).max(f64::MIN_POSITIVE);
             let step = norm(&correction.displacement).max(norm(&correction.approach)) / size;
@@ -76,7 +81,7 @@ impl<'a> Nearby<'a> {
             if step <= SETTLED || (step <= ACCEPTED && !shrinks) {
                 let State { displacement, approach, penetration } = state;
                 let k = tangent_stiffness(other, &displacement)?;
-                let points = states(&other.pairs, &penetration);
+                let points = states(&other.pairs, &penetration, &displacement);
                 let residual = residual(other, &k, &displacement, &points).1;
                 return Ok(Some(SteadySliding { displacement, approach, points, iterations, residual }));
             }

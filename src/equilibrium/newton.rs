@@ -48,7 +48,7 @@ impl Newton for ContactProblem<'_> {
         let mut length = f64::INFINITY;
         let measured = |step: &[f64]| contact.length(&step[..n], &contact.approaches(&step[n..]));
         for iteration in 1..=self.max_iterations {
-            let laws = contact.respond(&penetration, fraction);
+            let laws = contact.respond(&penetration, &[], fraction);
             if !are_finite(&laws) {
                 return Err(format!("at iteration {iteration} a force of the contact is not finite"));
             }
@@ -68,7 +68,7 @@ impl Newton for ContactProblem<'_> {
                 if settled {
                     return Ok((Closure { penetration: next, approach: next_approach }, iteration));
                 }
-                let laws = contact.respond(&next, fraction);
+                let laws = contact.respond(&next, &[], fraction);
                 let again = measured(&factor.solve(&self.residual(&next, &next_approach, &laws, fraction)));
                 if again <= (1.0 - 0.25 * damping) * length || damping < 1e-3 {
                     (penetration, approach) = (next, next_approach);
@@ -153,7 +153,7 @@ impl<'a> ContactProblem<'a> {
 
     /// The whole state of a solution: u = A⁻¹ (f + Σ g (d e − N) + t₁F₁ + t₂F₂).
     pub(super) fn state(&self, Closure { penetration, approach }: Closure) -> State {
-        let laws = self.contact.respond(&penetration, 1.0);
+        let laws = self.contact.respond(&penetration, &[], 1.0);
         let motions = self.contact.motions(&penetration, &approach);
         let mut rhs = self.load.to_vec();
         for (p, (_, _, point)) in self.contact.points.iter().enumerate() {
@@ -171,7 +171,7 @@ impl<'a> ContactProblem<'a> {
     pub(super) fn correction(&self, state: &State, r: &[f64]) -> Option<State> {
         let points = &self.contact.points;
         let n = points.len();
-        let laws = self.contact.respond(&state.penetration, 1.0);
+        let laws = self.contact.respond(&state.penetration, &[], 1.0);
         let factor = ScaledLu::new(self.jacobian(&laws), n)?;
         // de = dδ − da + c with c what u and δ are apart.
         let apart = self.contact.apart(state);

@@ -51,10 +51,14 @@ impl<'a> PointLaws<'a> {
         self.loaded.binary_search(&pair).ok()
     }
 
-    /// Forces of every point at its penetration, a part of its friction.
-    pub(super) fn respond(&self, penetration: &[f64], fraction: Fraction) -> Vec<Law> {
+    /// Forces of every point at its penetration, a part of its friction; of points that stick at the displacement `u`, which others do not
+    /// need.
+    pub(super) fn respond(&self, penetration: &[f64], u: &[f64], fraction: Fraction) -> Vec<Law> {
         let at = |(penetration, (_, pair, point)): (&f64, &(usize, &ContactPair, &ContactPoint))| {
-            let (mut forces, mut tangent) = respond(pair, point, *penetration);
+            let (mut forces, mut tangent) = respond(pair, point, *penetration, slid(pair, point, u));
+            if pair.sticks() {
+                return (forces, tangent);
+            }
             for i in 0..2 {
                 forces.friction[i] *= fraction;
                 tangent.by_penetration[1 + i] *= fraction;
@@ -93,7 +97,7 @@ impl<'a> PointLaws<'a> {
     pub(super) fn mismatch(&self, state: &State) -> f64 {
         let scale = self.scale(&state.penetration, &state.approach);
         let apart = norm(&self.apart(state)) / scale;
-        let closure = self.closure(&self.respond(&state.penetration, 1.0), 1.0);
+        let closure = self.closure(&self.respond(&state.penetration, &state.displacement, 1.0), 1.0);
         let relative = |(k, gap): (&usize, &f64)| gap.abs() / load(&self.pairs[*k]);
         self.loaded.iter().zip(&closure).map(relative).fold(apart, f64::max)
     }
@@ -120,8 +124,9 @@ impl<'a> PointLaws<'a> {
     /// Whether a pair carries nothing at these penetrations.
     pub(super) fn some_pair_is_open(&self, penetration: &[f64]) -> bool {
         let mut presses = vec![false; self.pairs.len()];
-        let laws = self.respond(penetration, 0.0);
-        self.points.iter().zip(&laws).for_each(|((k, ..), law)| presses[*k] |= law.0.normal != 0.0);
+        for (delta, (k, pair, point)) in penetration.iter().zip(&self.points) {
+            presses[*k] |= respond(pair, point, *delta, [0.0; 2]).0.normal != 0.0;
+        }
         presses.contains(&false)
     }
 
@@ -135,8 +140,16 @@ impl<'a> PointLaws<'a> {
     }
 }
 
-/// The law of a point at a penetration, in steady sliding.
-pub(super) fn respond(pair: &ContactPair, point: &ContactPoint, penetration: f64) -> Law {
+/// Δ \[m\] along t₁ and t₂ of a point of a pair that sticks; zero of one that slides, whose law does not need it.
+pub(super) fn slid(pair: &ContactPair, point: &ContactPoint, u: &[f64]) -> [f64; 2] {
+    if pair.sticks() { [0, 1].map(|k| -point.tangents[k].dot(u)) } else { [0.0; 2] }
+}
+
+/// The law of a point at a penetration, in steady sliding; of one that sticks at what it slid.
+pub(super) fn respond(pair: &ContactPair, point: &ContactPoint, penetration: f64, slid: [f64; 2]) -> Law {
+    if pair.sticks() {
+        return pair.law.hold(penetration, slid, point.weight);
+    }
     let motion =
         ContactMotion { penetration, penetration_rate: 0.0, slip_velocity: [pair.velocity_at(point), 0.0] };
     pair.law.respond(&motion, point.weight)
@@ -163,7 +176,8 @@ fn first_approach(pair: &ContactPair, fraction: Fraction) -> f64 {
         Closing::Approach(approach) => return approach,
         Closing::Load(load) => load,
     };
-    let carried = |a: f64| -> f64 { pair.points.iter().map(|p| respond(pair, p, a - p.gap).0.normal).sum() };
+    let carried =
+        |a: f64| -> f64 { pair.points.iter().map(|p| respond(pair, p, a - p.gap, [0.0; 2]).0.normal).sum() };
     let touch = pair.points.iter().map(|p| p.gap).fold(f64::INFINITY, f64::min);
     let mut beyond = 1e-9;
     while carried(touch + beyond) < fraction * load && beyond < 1e6 {

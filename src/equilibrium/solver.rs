@@ -43,7 +43,8 @@ impl<'a> SteadySolver<'a> {
     /// A rigid motion that not even the closed contact resists.
     pub fn new(system: &'a System, stiffness: Cow<'a, SparseMatrix>) -> Result<Self> {
         let unsymmetric = system.coupling.as_ref().is_some_and(Coupling::has_stiffness);
-        let method = if unsymmetric || system.points().count() > FEW {
+        let sticks = system.pairs.iter().any(ContactPair::sticks);
+        let method = if unsymmetric || sticks || system.points().count() > FEW {
             Method::Assembled(Assembled::new(system, &stiffness)?)
         } else {
             Method::Condensed(Condensed::new(system, &stiffness)?.into())
@@ -86,7 +87,7 @@ impl<'a> SteadySolver<'a> {
         let mut refused = None;
         let mut accepted = |state: State, iterations: usize| {
             let (state, error) = refine(system, &self.stiffness, &problem, state);
-            let points = states(&system.pairs, &state.penetration);
+            let points = states(&system.pairs, &state.penetration, &state.displacement);
             if let Err(fault) = check_contact(&system.pairs, &state.approach, &points, options) {
                 refused = Some(fault);
                 return None;
@@ -124,15 +125,14 @@ impl<'a> SteadySolver<'a> {
         options: &SteadyOptions,
     ) -> Result<Vec<PointState>> {
         check_input(pairs, load, self.stiffness.nrows())?;
-        let (penetration, approach) = match &self.problem(pairs, load, options) {
-            Problem::Condensed(contact) => {
-                solve_accepted(contact, |stage, _| Some((stage.penetration, stage.approach)))
-            }
-            Problem::Assembled(contact) => {
-                solve_accepted(contact, |state, _| Some((state.penetration, state.approach)))
-            }
+        let (points, approach) = match &self.problem(pairs, load, options) {
+            Problem::Condensed(contact) => solve_accepted(contact, |stage, _| {
+                Some((states(pairs, &stage.penetration, &[]), stage.approach))
+            }),
+            Problem::Assembled(contact) => solve_accepted(contact, |state, _| {
+                Some((states(pairs, &state.penetration, &state.displacement), state.approach))
+            }),
         }?;
-        let points = states(pairs, &penetration);
         check_contact(pairs, &approach, &points, options)?;
         Ok(points)
     }
@@ -142,7 +142,8 @@ impl<'a> SteadySolver<'a> {
 /// error that is left.
 fn refine(system: &System, k: &SparseMatrix, problem: &Problem<'_>, mut state: State) -> (State, f64) {
     let measure = |state: &State| {
-        let (r, size) = residual(system, k, &state.displacement, &states(&system.pairs, &state.penetration));
+        let points = states(&system.pairs, &state.penetration, &state.displacement);
+        let (r, size) = residual(system, k, &state.displacement, &points);
         (r, norm(&[size, problem.contact().mismatch(state)]))
     };
     let (mut r, mut size) = measure(&state);

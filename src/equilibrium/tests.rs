@@ -1,3 +1,5 @@
+mod sticking;
+
 use super::samples::*;
 use super::*;
 use crate::bounds::{Origin::*, within};

@@ -4,16 +4,16 @@ use super::contact_twice::{points_twice, surfaces_twice, tied_and_in_contact};
 use super::counter::{CounterFaces, counter_faces};
 use super::imported::given_points;
 use super::regions::Regions;
-use crate::case::{Case, Contact, InitialGap, Pressing, SlidingChoice, StiffnessPer};
+use crate::case::{Case, Contact, Friction, InitialGap, Pressing, SlidingChoice, StiffnessPer};
 use crate::connected::lowest_connected;
 use crate::contact::{
-    Bristle, ContactPatch, ContactSide, GroundFault, NormalLaw, Sliding, SlidingLaw, Surfaces, pair_surfaces,
-    travelled, tributary,
+    Bristle, ContactPatch, ContactSide, FrictionSense, GroundFault, NormalLaw, Sliding, SlidingLaw, Surfaces,
+    pair_surfaces, travelled, tributary,
 };
 use crate::error::{Error, Fault, Faults, Result};
 use crate::mesh::{Cell, cell_nodes, made_of};
 use crate::structure::{DofMap, Model, Part};
-use crate::system::{Closing, ContactPair, ContactPoint};
+use crate::system::{Closing, ContactPair, ContactPoint, FrictionAtRest};
 use nalgebra::Vector3;
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -41,7 +41,7 @@ pub fn contact_pairs(
         } else {
             faults.take(surface_points(name, contact, (regions, model, dofs), &Stand::first(contact)))
         };
-        let law = faults.take(law(name, contact));
+        let law = faults.take(law(name, contact, touches_with_faces(contact, regions, model)));
         let points = points.and_then(|points| faults.take(by_mean_distance(name, contact, points)));
         if let (Some(points), Some(law)) = (points, law) {
             pairs.push(ContactPair {
@@ -66,8 +66,9 @@ pub fn contact_pairs(
 pub fn with_laws(pairs: &[ContactPair], case: &Case) -> Result<Vec<ContactPair>> {
     let of = |pair: &ContactPair| {
         let contact = &case.contact[&pair.name];
+        let elastic = pair.law.at_rest() == FrictionAtRest::Elastic;
         Ok(ContactPair {
-            law: Arc::new(law(&pair.name, contact)?),
+            law: Arc::new(law(&pair.name, contact, elastic)?),
             closing: closing(contact),
             sliding_velocity: sliding_velocity(contact, &pair.points),
             ..pair.clone()
@@ -107,21 +108,29 @@ fn closing(contact: &Contact) -> Closing {
     }
 }
 
-fn law(name: &str, contact: &Contact) -> Result<SlidingLaw> {
+/// Whether the points of a pair are the integration points of faces of a solid.
+fn touches_with_faces(contact: &Contact, regions: &Regions, model: &Model) -> bool {
+    let nodes = regions.nodes(&contact.body, "").unwrap_or_default();
+    let on_a_solid = model.part_with(&nodes).is_some_and(|part| part.as_shell().is_none());
+    contact.points.is_none() && contact.normal.per == StiffnessPer::Area && on_a_solid
+}
+
+/// The law of a pair, which sticks elastically by default where `elastic`.
+fn law(name: &str, contact: &Contact, elastic: bool) -> Result<SlidingLaw> {
     let normal = NormalLaw {
         stiffness: contact.normal.stiffness,
         cubic_stiffness: contact.normal.cubic,
         damping: contact.normal.damping,
         bilateral: !contact.normal.unilateral,
     };
+    let Friction { regularisation, sense, .. } = contact.friction;
+    let sticks = (elastic || contact.rests())
+        && (regularisation == 0.0 && sense == FrictionSense::WithSlip)
+        && (normal.stiffness > 0.0 && !normal.bilateral);
+    let by_default = sticks.then_some(Bristle { stiffness: normal.stiffness, damping: 0.0 });
+    let given = contact.bristle.as_ref().map(|b| Bristle { stiffness: b.stiffness, damping: b.damping });
     let friction = contact.friction.law.coefficient(&format!("`contact.{name}.friction`"))?;
-    Ok(SlidingLaw {
-        normal,
-        friction,
-        regularisation: contact.friction.regularisation,
-        sense: contact.friction.sense,
-        bristle: contact.bristle.as_ref().map(|b| Bristle { stiffness: b.stiffness, damping: b.damping }),
-    })
+    Ok(SlidingLaw { normal, friction, regularisation, sense, bristle: given.or(by_default) })
 }
 
 /// A stiffness per length on faces, per area on lines, or either on points.

@@ -63,9 +63,7 @@ fn parts_without_a_support(prepared: &Prepared, faults: &mut Faults) {
         return;
     }
     let stiffness = &system.structure.stiffness;
-    let closed = closed_springs(system, stiffness);
-    let springs: Vec<_> =
-        closed.into_iter().zip(system.points()).map(|(d, (_, point))| (d, &point.normal)).collect();
+    let springs = closed_springs(system, stiffness);
     // Matrices that hold no numbers are a fault of their own.
     let parts =
         unresisted_parts(&prepared.model, &prepared.assembled, stiffness, &springs).unwrap_or_default();

@@ -137,6 +137,13 @@ impl Describe for SteadyResult {
                 |p| p.tangent.by_slip_velocity.as_flattened().to_vec(),
                 Some(directions()),
             ),
+            tangent(
+                "force_by_slid",
+                "N/m",
+                "∂(N, F₁, F₂)/∂(Δ₁, Δ₂), what the counter-body slid, of points that stick",
+                |p| p.tangent.by_slid.as_flattened().to_vec(),
+                Some(directions()),
+            ),
         ];
         let nodes = vec![Dimension::indexed("node", self.displacement.len()), Dimension::freedoms()];
         let displacement = Values::RealRows(Box::new(|node| self.displacement[node].to_vec()));

@@ -1,6 +1,6 @@
 //! Contact of many points as part of the stiffness.
 //!
-//! K_c = Σ U k Uᵀ has a symmetric part Σ k_gg g gᵀ, k_gg = ∂N/∂δ, which holds the bodies together, and friction, which is
+//! K_c = Σ U k Uᵀ has a symmetric part Σ k_gg g gᵀ, k_gg = ∂N/∂δ, with k_tt t tᵀ of points that stick, which holds the bodies together, and friction, which is
 //! small beside it. Real modes and factors of the open structure do not know it: as many of their combinations as there are
 //! directions would have to come from corrections, and the digits of k_gg are lost in the projected problem. So where the
 //! directions are more than the real modes, the spring of every point is added to K, real modes and factors are those of
@@ -25,8 +25,8 @@ pub struct ClosedContact {
     pub(super) steady: SteadySliding,
     pub(super) real: RealModes,
     shifted: ShiftedStiffness,
-    /// k_gg of each point \[N/m\], which is part of K.
-    pub(super) springs: Vec<f64>,
+    /// What of each point is part of K \[N/m\], along g, t₁, t₂.
+    pub(super) springs: Vec<[f64; 3]>,
 }
 
 impl ClosedContact {
@@ -41,8 +41,8 @@ impl ClosedContact {
         top: f64,
         observer: &dyn Observer,
     ) -> Result<Option<Self>> {
-        let springs: Vec<f64> = steady.points.iter().map(|point| point.tangent.by_penetration[0]).collect();
-        let many = springs.iter().any(|k| *k != 0.0)
+        let springs: Vec<[f64; 3]> = steady.points.iter().map(|point| point.tangent.springs()).collect();
+        let many = springs.as_flattened().iter().any(|k| *k != 0.0)
             && Interface::new(system, steady).active(top).len() > real.len();
         if !many || real.len() == system.n_dofs() {
             return Ok(None);
@@ -52,7 +52,10 @@ impl ClosedContact {
         let below = if real.certificate.holds() { counted } else { top / TAU };
         let (real, shifted) = compute(&structure, ModesWanted::BelowHz(below), observer)?;
         let mut steady = steady.clone();
-        steady.points.iter_mut().for_each(|point| point.tangent.by_penetration[0] = 0.0);
+        steady
+            .points
+            .iter_mut()
+            .for_each(|point| point.tangent = point.tangent.without(point.tangent.springs()));
         let system = System { structure, prestress: None, ..system.clone() };
         Ok(Some(ClosedContact { system, steady, real, shifted, springs }))
     }

@@ -27,8 +27,8 @@ pub struct FamilyFrame<'a> {
     operator: Operator<'a>,
     shifted: ShiftedStiffness,
     real: &'a RealModes,
-    /// The springs of the contact points that are part of K \[N/m\]; none where K is that of the open structure.
-    springs: &'a [f64],
+    /// The springs of the contact points that are part of K \[N/m\], along g, t₁, t₂; none where K is that of the open structure.
+    springs: &'a [[f64; 3]],
     /// The other dampings; states weigh them with the system's own.
     dampings: Vec<&'a Damping>,
     /// \[rad/s\].
@@ -116,7 +116,7 @@ impl<'a> FamilyFrame<'a> {
     }
 
     fn with(
-        (system, displacement, springs): (&'a System, &[f64], &'a [f64]),
+        (system, displacement, springs): (&'a System, &[f64], &'a [[f64; 3]]),
         real: &'a RealModes,
         dampings: Vec<&'a Damping>,
         band_hz: [f64; 2],
@@ -140,7 +140,7 @@ impl<'a> FamilyFrame<'a> {
             return terms_of_every_point(self.system, &state.points);
         }
         let mut points = state.points.clone();
-        points.iter_mut().zip(self.springs).for_each(|(point, k)| point.tangent.by_penetration[0] -= k);
+        points.iter_mut().zip(self.springs).for_each(|(point, k)| point.tangent = point.tangent.without(*k));
         terms_of_every_point(self.system, &points)
     }
 }
@@ -157,8 +157,8 @@ impl<'f> Family<'f> {
         let terms = envelope(states.iter().map(|state| frame.terms(state)));
         let springs: Vec<(usize, f64)> = terms
             .iter()
-            .filter(|t| t.row == t.column && t.row < 3 * frame.system.points().count() && t.row % 3 == 0)
-            .map(|t| (t.row, t.stiffness.max(0.0)))
+            .filter(|t| t.row == t.column && t.row < 3 * frame.system.points().count() && t.stiffness > 0.0)
+            .map(|t| (t.row, t.stiffness))
             .collect();
         let mut basis = Basis::new(&frame.operator, frame.real.shapes.as_ref(), frame.band[1].powi(2));
         let top = frame.band[1];

@@ -26,6 +26,11 @@ impl ContactPair {
         self.sliding_velocity * point.speed
     }
 
+    /// Whether the bodies do not slide past each other: their points stick.
+    pub fn sticks(&self) -> bool {
+        self.sliding_velocity == 0.0
+    }
+
     /// Whether its points also pull, so that they never open and touch without a load, too.
     pub fn is_bilateral(&self) -> bool {
         let motion = ContactMotion { penetration: -1.0, penetration_rate: 0.0, slip_velocity: [0.0; 2] };

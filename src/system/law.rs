@@ -31,6 +31,24 @@ pub struct ContactTangent {
     pub by_penetration_rate: [f64; 3],
     /// ∂(N, F₁, F₂)/∂(v₁, v₂) \[N s/m\].
     pub by_slip_velocity: [[f64; 2]; 3],
+    /// ∂(N, F₁, F₂)/∂Δ \[N/m\], Δ how far the counter-body has slid past the body along t₁ and t₂; of points that stick elastically.
+    pub by_slid: [[f64; 2]; 3],
+}
+
+impl ContactTangent {
+    /// The stiffness along g, t₁ and t₂ \[N/m\]: ∂N/∂δ, and that of the elastic deflection of a point that sticks.
+    pub fn springs(&self) -> [f64; 3] {
+        [self.by_penetration[0], self.by_slid[1][0], self.by_slid[2][1]]
+    }
+
+    /// The derivatives where these springs are part of the structure.
+    #[must_use]
+    pub fn without(mut self, [normal, along, across]: [f64; 3]) -> Self {
+        self.by_penetration[0] -= normal;
+        self.by_slid[1][0] -= along;
+        self.by_slid[2][1] -= across;
+        self
+    }
 }
 
 /// How far a point slid in a time step, and what it remembers of the steps before.
@@ -55,8 +73,6 @@ pub struct SlipAnswer {
     pub forces: ContactForces,
     /// Their derivatives by the motion at the end of the step, Δ held.
     pub tangent: ContactTangent,
-    /// ∂(F₁, F₂)/∂Δ \[N/m\].
-    pub by_slid: [[f64; 2]; 2],
     /// ∂(F₁, F₂)/∂**F** of the last iterate: that of the resolvent where the law is set-valued at rest, whose answer is a
     /// function of **F** + ρ **v** and right where it equals **F**. Zero for other laws.
     pub by_friction: [[f64; 2]; 2],
@@ -91,6 +107,16 @@ pub trait ContactLaw: Debug + Send + Sync {
     fn advance(&self, motion: &ContactMotion, _since: &SlipStep, weight: f64) -> SlipAnswer {
         let (forces, tangent) = self.respond(motion, weight);
         SlipAnswer { forces, tangent, ..SlipAnswer::default() }
+    }
+
+    /// Forces and Jacobian at one point of a pair that does not slide, at rest under a load: δ \[m\], and Δ \[m\], how far the
+    /// counter-body has moved past the body along t₁ and t₂ since nothing pressed them. Without friction but in laws that stick elastically.
+    fn hold(&self, penetration: f64, _slid: [f64; 2], weight: f64) -> (ContactForces, ContactTangent) {
+        let motion = ContactMotion { penetration, penetration_rate: 0.0, slip_velocity: [0.0; 2] };
+        let (forces, tangent) = self.respond(&motion, weight);
+        let [normal, ..] = tangent.by_penetration;
+        let tangent = ContactTangent { by_penetration: [normal, 0.0, 0.0], ..ContactTangent::default() };
+        (ContactForces { friction: [0.0; 2], ..forces }, tangent)
     }
 
     /// Friction at zero slip.

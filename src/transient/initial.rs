@@ -52,14 +52,19 @@ impl State {
         Ok(state)
     }
 
-    /// The reaction at the end of a step that has just begun, with no bristle bent.
+    /// The reaction at the end of a step that has just begun, with no bristle of a pair that slides bent.
     fn begin_to_slide(&mut self, model: &TransientModel<'_>) {
         let travel: Vec<f64> = self.speeds.iter().map(|speed| -JUST_BEGUN * speed).collect();
         self.before.copy_from(&self.along);
+        // Those of pairs that never slide are bent by what presses them.
+        let own = model.points.iter().zip(&self.bristles);
+        let bent: Vec<Bristles> = own
+            .map(|(point, own)| if model.sticks(point.pair) { *own } else { Bristles::default() })
+            .collect();
         let since = Since {
             travel: &travel,
             approaches: &self.interface.approaches,
-            bristles: &vec![Bristles::default(); model.points.len()],
+            bristles: &bent,
             duration: JUST_BEGUN,
             force: &self.reaction,
             resistance: &vec![1.0; model.points.len()],
@@ -67,7 +72,7 @@ impl State {
         let mut reaction = Reaction::new(model);
         let along = [0, 1].map(|k| self.along.col_as_slice(k));
         reaction.evaluate(model, along, self.moment(), Some(since));
-        reaction.bristles.fill(Bristles::default());
+        reaction.bristles.copy_from_slice(&bent);
         self.answer(&reaction);
     }
 

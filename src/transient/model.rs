@@ -227,6 +227,11 @@ impl<'a> TransientModel<'a> {
         3 * self.points.len() + self.coupling.map_or(0, |[k, _]| k.nrows())
     }
 
+    /// Whether a pair never slides.
+    pub(super) fn sticks(&self, pair: usize) -> bool {
+        self.velocities[pair] == 0.0
+    }
+
     /// V of each pair at a time \[m/s\].
     pub fn speeds(&self, time: f64) -> impl Iterator<Item = f64> + '_ {
         self.velocities.iter().zip(&self.profiles).map(move |(v, profile)| v * profile.factor(time))

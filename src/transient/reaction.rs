@@ -132,20 +132,21 @@ impl Reaction {
                     point.law.advance(&motion, &since, point.weight)
                 }
                 None => {
-                    let (forces, tangent) = point.law.respond(&motion, point.weight);
+                    let (forces, tangent) = if model.sticks(point.pair) {
+                        point.law.hold(motion.penetration, [-q[at + 1], -q[at + 2]], point.weight)
+                    } else {
+                        point.law.respond(&motion, point.weight)
+                    };
                     let bristle = point.law.bent(forces.friction, point.weight);
-                    SlipAnswer { forces, tangent, bristle, ..SlipAnswer::default() }
+                    let sticks = model.sticks(point.pair);
+                    SlipAnswer { forces, tangent, bristle, sticks, ..SlipAnswer::default() }
                 }
             };
-            let SlipAnswer { forces, tangent, by_slid, by_friction, .. } = answer;
+            let SlipAnswer { forces, tangent, by_friction, .. } = answer;
             let values = [forces.normal, -forces.friction[0], -forces.friction[1]];
             self.force[at..at + 3].copy_from_slice(&values);
             self.bristles[p] = Bristles { bent: answer.bristle, stick: answer.sticks };
-            let mut block = ContactBlock::new(p, &tangent);
-            for (i, row) in by_slid.iter().enumerate() {
-                // Both −F and −Δ: the signs cancel.
-                (0..2).for_each(|j| block.stiffness[1 + i][1 + j] += row[j]);
-            }
+            let block = ContactBlock::new(p, &tangent);
             let per_step = since.map_or(0.0, |since| 1.0 / since.duration);
             self.by_approach[p] =
                 [0, 1, 2].map(|row| block.stiffness[row][0] + per_step * block.damping[row][0]);

@@ -27,4 +27,5 @@ mod rotation;
 mod schema;
 mod solids;
 mod stick_slip;
+mod sticking;
 mod supply;

@@ -22,7 +22,7 @@ pub struct About {
     /// Results that a change invalidates; `None` for those of its table.
     pub invalidates: Option<Invalidates>,
     /// Whether eigenvalues have a derivative by its numbers, by their indices in lists.
-    pub derivative: fn(&[usize]) -> Derivative,
+    pub derivative: fn(&[usize], f64) -> Derivative,
     /// Whether it must be there.
     pub required: bool,
     /// The default in words, where it follows from other keys.
@@ -47,7 +47,7 @@ fn field<T: Value>(expected: impl Into<Cow<'static, str>>, units: Units) -> Fiel
         units,
         bounds: (Bound::Unbounded, Bound::Unbounded),
         invalidates: None,
-        derivative: |_| Derivative::Exists,
+        derivative: |_, _| Derivative::Exists,
         required: true,
         default_words: None,
         label: None,
@@ -198,7 +198,7 @@ impl<T: Value> Field<T> {
     }
 
     /// Whether eigenvalues have a derivative by its numbers, by their indices in lists.
-    pub fn derivative(mut self, of: fn(&[usize]) -> Derivative) -> Self {
+    pub fn derivative(mut self, of: fn(&[usize], f64) -> Derivative) -> Self {
         self.about.derivative = of;
         self
     }

@@ -131,7 +131,7 @@ impl Visitor for Walk<'_> {
             let path = at.iter().fold(path.clone(), |path, k| format!("{path}.{k}"));
             let unit = units[at.last().map_or(0, |k| (*k).min(1))];
             let derivative =
-                if invalidates == Invalidates::Question { Derivative::Zero } else { derivative(at) };
+                if invalidates == Invalidates::Question { Derivative::Zero } else { derivative(at, *value) };
             let label = self.label(key, words, at);
             let scalar = Scalar { path, label, value: *value, unit, bounds, invalidates, derivative };
             (self.each)(scalar, value);

@@ -35,7 +35,8 @@ impl InTime<'_> {
         }
         let mut system = (*self.point.system).clone();
         for (pair, still) in system.pairs.iter_mut().zip(&places.still) {
-            if at_rest || velocity(&pair.name) == 0.0 {
+            // A pair that never slides keeps the friction that it sticks by.
+            if !pair.sticks() && (at_rest || velocity(&pair.name) == 0.0) {
                 pair.law = still.law.clone();
             } else {
                 pair.sliding_velocity *= velocity(&pair.name);
