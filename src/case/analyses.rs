@@ -18,7 +18,8 @@ choices! {
 declare! {
     /// Real modes of parts or of the whole.
     pub struct ModesAnalysis, checked by check_modes {
-        /// Regions of shells, bars and solids; all of them when empty.
+        /// Regions of shells, bars and solids; all of them when empty. Modes of the whole, complex ones too, are compared with those of parts
+        /// alone and named by them.
         pub parts: Vec<String> = key::names("regions of shells, bars and solids").or(Vec::new()),
         /// Regions held in all degrees of freedom in this analysis only.
         pub clamp: Vec<String> = key::names("regions").or(Vec::new()),

@@ -81,7 +81,7 @@ pub fn band_modes<'a>(
 }
 
 /// Complex eigenvalues at the steady state, and the operating point that they belong to; `basis` is the real modes of the whole where they
-/// are known already. Left vectors are kept where `left_vectors` or the case asks for them.
+/// are known already. Left vectors are kept where `left_vectors` or the case asks for them. It has no shares of the parts.
 pub fn complex_result<'a>(
     (prepared, steady): (&'a Prepared, Arc<SteadySliding>),
     cea: &CeaAnalysis,
@@ -99,7 +99,7 @@ pub fn complex_result<'a>(
         ),
         false => None,
     };
-    let labels = labels(&identify(prepared, &real, &prepared.assembled), &real);
+    let labels = labels(&identify(prepared, &real, (&prepared.model, &prepared.assembled)), &real);
     let participation = modes
         .modes
         .iter()
@@ -115,6 +115,8 @@ pub fn complex_result<'a>(
         dofs: prepared.assembled.dofs.clone(),
         participation,
         real_modes: labels,
+        discs: Vec::new(),
+        shares: None,
         measured_squeal_hz: cea.measured_squeal.iter().map(|f| (*f, cea.measured_source.clone())).collect(),
         band_hz: band,
         certificate,

@@ -238,7 +238,7 @@ impl PreparedFrf<'_> {
 
     /// The real modes in the band, up to [`BESIDE`] its ends, and how much of them shows.
     fn resonances(&self, prepared: &Prepared<'_>, real: &RealModes) -> Result<Vec<Resonance>> {
-        let names = labels(&identify(prepared, real, &prepared.assembled), real);
+        let names = labels(&identify(prepared, real, (&prepared.model, &prepared.assembled)), real);
         let [low, high] = self.wanted.band;
         let band = low * (1.0 - BESIDE)..=high * (1.0 + BESIDE);
         let inside: Vec<usize> = (0..real.len()).filter(|k| band.contains(&real.frequency_hz(*k))).collect();

@@ -36,6 +36,8 @@ mod modes;
 mod motion;
 mod operating_point;
 #[cfg(feature = "cli")]
+mod part_modes;
+mod part_shares;
 mod parts;
 mod place;
 mod plausible;

@@ -1,17 +1,19 @@
 //! Real modes of one part or of the whole, with names and effective masses.
 
 use super::links::in_terms_of_the_case;
+use super::part_shares::real_shares;
 use super::prepared::Prepared;
 use crate::case::{Case, CeaAnalysis, ContactState, ModesAnalysis};
 use crate::error::{Error, Fault, Faults, Result};
 use crate::linalg::SparseMatrix;
-use crate::linalg::sparse::{add_scaled, times};
+use crate::linalg::sparse::add_scaled;
 use crate::modal::{self, DiscModeName, ModesWanted, RealModes};
 use crate::numbers::{hertz, typed};
 use crate::results::NamedModes;
-use crate::structure::{self, Assembled, assemble};
-use crate::system::{Damping, ModalDamping, Structure};
+use crate::structure::{self, Assembled, Model, PartForms, PartMatrix, assemble};
+use crate::system::{ModalDamping, Structure};
 use faer::Mat;
+use std::borrow::Cow;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -29,20 +31,20 @@ pub fn part_modes(
     name: &str,
     observer: &dyn crate::progress::Observer,
 ) -> Result<NamedModes> {
-    let assembled = part_assembled(prepared, name)?;
+    let (model, assembled) = part_assembled(prepared, name)?;
     let wanted = wanted(&prepared.case.modes[name], assembled.dofs.n_dofs());
     let (modes, _) = modal::compute(&assembled.structure, wanted, observer)?;
-    Ok(named(prepared, name, modes, &assembled))
+    Ok(named(prepared, name, modes, (&model, &assembled)))
 }
 
-/// The structure of one real-mode analysis of the case: parts alone, or the whole, held as it says.
+/// The model and its matrices of one real-mode analysis of the case: parts alone, or the whole, held as it says.
 ///
 /// # Errors
 /// Regions that are missing, or nothing that can move.
-pub fn part_assembled(prepared: &Prepared, name: &str) -> Result<Arc<Assembled>> {
+pub fn part_assembled<'p>(prepared: &'p Prepared, name: &str) -> Result<(Cow<'p, Model>, Arc<Assembled>)> {
     let analysis = &prepared.case.modes[name];
-    let assembled = if prepared.case.matrices.is_some() || of_the_whole(prepared, analysis) {
-        prepared.assembled.clone()
+    let (model, assembled) = if prepared.case.matrices.is_some() || of_the_whole(prepared, analysis) {
+        (Cow::Borrowed(&prepared.model), prepared.assembled.clone())
     } else {
         let model =
             super::model::part_model(prepared.case, &prepared.regions, &prepared.model, name, analysis)?;
@@ -50,7 +52,7 @@ pub fn part_assembled(prepared: &Prepared, name: &str) -> Result<Arc<Assembled>>
         let mut assembled =
             assemble(&model).map_err(|error| in_terms_of_the_case(error, prepared.case, clamp))?;
         assembled.structure.engine = prepared.system.structure.engine.clone();
-        Arc::new(assembled)
+        (Cow::Owned(model), Arc::new(assembled))
     };
     if assembled.dofs.n_dofs() == 0 {
         return Err(Error::input(Fault::new(
@@ -59,7 +61,7 @@ pub fn part_assembled(prepared: &Prepared, name: &str) -> Result<Arc<Assembled>>
             "parts that can move",
         )));
     }
-    Ok(assembled)
+    Ok((model, assembled))
 }
 
 /// Whether the structure of one real-mode analysis can be built.
@@ -115,17 +117,26 @@ pub fn without_prestress(case: &Case, place: &str, other: &str) -> Option<String
     })
 }
 
-/// Real modes with names and effective masses.
-pub fn named(prepared: &Prepared, name: &str, modes: RealModes, assembled: &Assembled) -> NamedModes {
-    let (moving_part, names) = identify(prepared, &modes, assembled).into_iter().unzip();
+/// Real modes with names, shares of the parts and effective masses, of `model` and its matrices.
+pub fn named(
+    prepared: &Prepared,
+    name: &str,
+    modes: RealModes,
+    (model, assembled): (&Model, &Assembled),
+) -> NamedModes {
+    let ratios = given_ratios(prepared.case, &modes).ratios;
+    let shares = real_shares((model, assembled), &modes, &ratios);
+    let moving = |k: usize| shares.as_ref().and_then(|shares| shares.moving_part(k).map(String::from));
+    let moving_part: Vec<Option<String>> = (0..modes.len()).map(moving).collect();
     NamedModes {
         name: name.to_string(),
         dofs: assembled.dofs.clone(),
-        names,
+        names: disc_names(prepared, &modes, &moving_part, assembled),
         moving_part,
         effective_mass: effective_masses(&modes, assembled),
         total_mass: assembled.total_mass,
-        damping_ratio: damping_ratios(prepared.case, &modes, &assembled.structure.damping),
+        damping_ratio: modal::damping_ratios(&modes, ratios, &assembled.structure.damping),
+        shares,
         universal: prepared.case.modes.get(name).is_some_and(|analysis| analysis.uff),
         modes,
     }
@@ -166,12 +177,7 @@ fn effective_masses(modes: &RealModes, assembled: &Assembled) -> Vec<[f64; 3]> {
     (0..modes.len()).map(|k| [0, 1, 2].map(|axis| effective[(k, axis)])).collect()
 }
 
-/// ζ of each mode of a part or of the whole by all damping of the case. Ratios that the case gives are of modes of the whole: a
-/// part need not have one near each.
-fn damping_ratios(case: &Case, modes: &RealModes, damping: &Damping) -> Vec<f64> {
-    modal::damping_ratios(modes, given_ratios(case, modes).ratios, damping)
-}
-
+/// Damping ratios that the case gives by mode. They are of modes of the whole: a part need not have one near each.
 fn given_ratios(case: &Case, modes: &RealModes) -> modal::GivenRatios {
     given_below(case, modes, damped_without_band(case))
 }
@@ -181,44 +187,22 @@ fn given_below(case: &Case, modes: &RealModes, below: f64) -> modal::GivenRatios
 }
 
 /// The part with the largest share of the kinetic energy of each mode.
-fn moving_parts(prepared: &Prepared, modes: &RealModes, assembled: &Assembled) -> Vec<Option<String>> {
-    let parts = &prepared.model.parts;
-    if parts.is_empty() {
+fn moving_parts(modes: &RealModes, (model, assembled): (&Model, &Assembled)) -> Vec<Option<String>> {
+    if model.parts.is_empty() {
         return vec![None; modes.len()];
     }
-    let mut owner = vec![Vec::new(); assembled.dofs.n_dofs()];
-    for (p, part) in parts.iter().enumerate() {
-        for node in part.nodes() {
-            for dof in 0..6 {
-                for (free, _) in assembled.dofs.terms(node, dof) {
-                    if owner[*free].last() != Some(&p) {
-                        owner[*free].push(p);
-                    }
-                }
-            }
-        }
-    }
-    let momentum = times(&assembled.structure.mass, modes.shapes.as_ref());
-    (0..modes.len())
-        .map(|k| {
-            let mut energy = vec![0.0; parts.len()];
-            for (i, owners) in owner.iter().enumerate() {
-                let share = modes.shapes[(i, k)] * momentum[(i, k)] / owners.len().max(1) as f64;
-                owners.iter().for_each(|p| energy[*p] += share);
-            }
-            let names = parts.iter().map(|part| &part.name).zip(energy);
-            names.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(name, _)| name.clone())
-        })
-        .collect()
+    let [kinetic] = PartForms::new(model, assembled).of([PartMatrix::Mass], modes.shapes.as_ref());
+    let most = |k: usize| (0..model.parts.len()).max_by(|a, b| kinetic[(*a, k)].total_cmp(&kinetic[(*b, k)]));
+    (0..modes.len()).map(|k| most(k).map(|part| model.parts[part].name.clone())).collect()
 }
 
 /// The part that moves most in a mode, and the mode's name where that is a disc.
 pub type Identity = (Option<String>, Option<DiscModeName>);
 
-/// The identity of each mode of a structure.
-pub fn identify(prepared: &Prepared, modes: &RealModes, assembled: &Assembled) -> Vec<Identity> {
-    let moving_part = moving_parts(prepared, modes, assembled);
-    let names = disc_names(prepared, modes, &moving_part, assembled);
+/// The identity of each mode of a structure: of `model` and its matrices.
+pub fn identify(prepared: &Prepared, modes: &RealModes, of: (&Model, &Assembled)) -> Vec<Identity> {
+    let moving_part = moving_parts(modes, of);
+    let names = disc_names(prepared, modes, &moving_part, of.1);
     moving_part.into_iter().zip(names).collect()
 }
 

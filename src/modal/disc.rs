@@ -1,12 +1,16 @@
 //! Recognises a plate that is a disc, and gives its nodes polar coordinates so that its modes can be named.
 
 use super::{DiscModeName, DiscPoints};
+use crate::linalg::c64;
 use nalgebra::{Matrix4, Vector3, Vector4};
 use std::collections::BTreeMap;
 
 /// Nodes that move by less than this part of rotation times radius stand on nodal lines; a wave of a hundred lobes around moves them by
 /// a hundredth.
 const STANDING: f64 = 1e-4;
+
+/// A complex motion stands where the part that lags by a quarter of a period has less than this of the energy of the other.
+const STANDS: f64 = 0.1;
 
 /// A flat round plate, with or without a hole.
 #[derive(Debug, Clone)]
@@ -90,6 +94,27 @@ impl Disc {
         let resolved = across > 0.5 * whole && !short;
         if resolved { self.points.name(&transverse) } else { None }
     }
+
+    /// The same of a complex shape. At the instant when a motion that stands has its largest deflection it has all its energy; one that
+    /// travels around has the same nodal diameters a quarter of a period later.
+    pub fn name_complex(&self, motion: impl Fn(usize) -> [c64; 6]) -> Option<DiscModeName> {
+        let across = |node: &usize| {
+            let [x, y, z, ..] = motion(*node);
+            x * self.normal.x + y * self.normal.y + z * self.normal.z
+        };
+        let turn = c64::cis(-0.5 * self.nodes.iter().map(|n| across(n).powi(2)).sum::<c64>().arg());
+        let energy = |part: fn(c64) -> f64| -> f64 {
+            self.nodes.iter().map(|node| part(turn * across(node)).powi(2)).sum()
+        };
+        let [first, later] = [energy(|w| w.re), energy(|w| w.im)];
+        let name = self.name(|node| motion(node).map(|u| (turn * u).re))?;
+        let stands = later < STANDS * first;
+        let same = || {
+            let other = self.name(|node| motion(node).map(|u| (turn * u).im));
+            other.is_some_and(|other| other.nodal_diameters == name.nodal_diameters)
+        };
+        (stands || same()).then_some(name)
+    }
 }
 
 /// Nodes on edges that belong to one face only.
@@ -162,6 +187,53 @@ mod tests {
             );
         }
         assert!(within((disc.normal.dot(&e1)).abs(), 1e-12, RoundOff));
+    }
+
+    /// Waves about an annulus that stand, or travel at any phase, have their diameters; two that travel alike have none.
+    #[test]
+    fn standing_and_travelling_waves_have_their_names() {
+        let (around, rings) = (96, 9);
+        let mut nodes = Vec::new();
+        for ring in 0..rings {
+            for i in 0..around {
+                let (radius, angle) = (
+                    0.3 + 0.7 * ring as f64 / (rings - 1) as f64,
+                    std::f64::consts::TAU * i as f64 / around as f64,
+                );
+                nodes.push([radius * angle.cos(), radius * angle.sin(), 0.0]);
+            }
+        }
+        let quad = |ring: usize, i: usize| {
+            let j = (i + 1) % around;
+            [ring * around + i, ring * around + around + i, ring * around + around + j, ring * around + j]
+        };
+        let faces: Vec<[usize; 4]> =
+            (0..rings - 1).flat_map(|ring| (0..around).map(move |i| quad(ring, i))).collect();
+        let faces: Vec<&[usize]> = faces.iter().map(|face| &face[..]).collect();
+        let disc = Disc::recognise(&faces, &nodes).unwrap();
+        let wave = |n: f64, s: usize, [forward, backward]: [c64; 2]| {
+            let (disc, nodes) = (&disc, &nodes);
+            move |node: usize| -> c64 {
+                let [x, y, _] = nodes[node];
+                let (r, angle) = (x.hypot(y), y.atan2(x));
+                let along = if s == 0 { r * r } else { 0.65 - r };
+                assert!(disc.normal.z.abs() > 0.5);
+                (forward * c64::cis(n * angle) + backward * c64::cis(-n * angle)) * along
+            }
+        };
+        let named = |w: &dyn Fn(usize) -> c64| {
+            let zero = c64::new(0.0, 0.0);
+            let name = disc.name_complex(|node| [zero, zero, w(node), zero, zero, zero]);
+            name.map(|name| (name.nodal_diameters, name.nodal_circles))
+        };
+        let [one, none, turned] = [c64::new(1.0, 0.0), c64::new(0.0, 0.0), c64::new(0.3, -0.4)];
+        for (n, s) in [(0, 0), (1, 0), (2, 1), (5, 0), (8, 1)] {
+            for parts in [[one, one], [turned, none], [none, one], [one, turned]] {
+                assert_eq!(named(&wave(f64::from(n), s, parts)), Some((n as usize, s)), "{parts:?}");
+            }
+        }
+        let (two, five) = (wave(2.0, 0, [one, none]), wave(5.0, 0, [one, none]));
+        assert_eq!(named(&|node| two(node) + five(node)), None);
     }
 
     #[test]

@@ -137,6 +137,17 @@ impl Chart {
         }
     }
 
+    /// Filled squares about points, `side` pixels wide, in a path of a few bytes each.
+    pub fn squares(&mut self, points: impl IntoIterator<Item = [f64; 2]>, side: f64, hex: &str) {
+        let tenths = |pixel: f64| (10.0 * pixel).round() / 10.0;
+        let pixels = points.into_iter().map(|point| self.pixel(point)).filter(|at| self.holds(*at));
+        let path: String = pixels.map(|[x, y]| format!("M{} {}h0", tenths(x), tenths(y))).collect();
+        let side = px(side);
+        self.marks.put(format_args!(
+            "<path d=\"{path}\" fill=\"none\" stroke=\"{hex}\" stroke-width=\"{side}\" stroke-linecap=\"square\"/>"
+        ));
+    }
+
     /// A filled point.
     pub fn dot(&mut self, at: [f64; 2], radius: f64, hex: &str) {
         self.circle(at, radius, &fill(hex));

@@ -5,7 +5,7 @@ use super::format::{fixed, given, hertz, power, rate, signed, significant};
 use super::section::{Display, ReportSection};
 use super::squeal::{SQUEAL_TOLERANCE, near, nearest_squeal};
 use super::table::{ReportTable, idle};
-use super::{budget, growth, participation};
+use super::{budget, growth, part_shares, participation};
 use crate::linalg::c64;
 use crate::results::{ComplexResult, RunResults};
 use crate::stability::{Certificate, ComplexMode, Confirmation, Verdict};
@@ -16,6 +16,8 @@ pub(super) fn sections(results: &RunResults) -> Vec<ReportSection> {
     let pictures = [growth::picture(results), budget::picture(results), participation::picture(results)];
     let section = ReportSection::new("Complex eigenvalues").findings([finding(complex)]);
     let section = section.pictures(pictures.into_iter().flatten()).tables(Display::Titled, [table(complex)]);
+    let section = section.pictures(part_shares::picture(complex));
+    let section = section.tables(Display::Closed, part_shares::complex_table(complex));
     vec![section.tables(Display::Proof, [proof(complex)])]
 }
 

@@ -9,7 +9,7 @@ use super::section::Picture;
 use super::svg::{Sheet, fill, ink, sheer, stroke};
 use super::table::ReportTable;
 use super::view::{ViewVector, cross, dot, unit};
-use crate::results::{RunResults, SteadyResult};
+use crate::results::{SteadyResult, file_name};
 
 /// Fewer points are no curve: they stand in the table.
 const FEWEST: usize = 5;
@@ -34,10 +34,18 @@ fn counted(steady: &SteadyResult) -> impl Iterator<Item = (&str, usize)> {
     steady.pairs.iter().map(move |(name, ..)| (name.as_str(), points(name)))
 }
 
-/// The picture of the first pair with enough points, when one of them is closed.
-pub(super) fn picture(results: &RunResults) -> Option<Picture> {
-    let steady = results.get::<SteadyResult>()?;
-    let (name, _) = counted(steady).find(|(_, points)| *points >= FEWEST)?;
+/// A picture of every pair with enough points of which one is closed.
+pub(super) fn pictures(steady: &SteadyResult) -> Vec<Picture> {
+    let enough = counted(steady).filter(|(_, points)| *points >= FEWEST);
+    let mut pictures: Vec<(&str, Picture)> =
+        enough.filter_map(|(name, _)| Some((name, picture(steady, name)?))).collect();
+    if pictures.len() > 1 {
+        pictures.iter_mut().for_each(|(name, picture)| picture.file = file_name("contact", name));
+    }
+    pictures.into_iter().map(|(_, picture)| picture).collect()
+}
+
+fn picture(steady: &SteadyResult, name: &str) -> Option<Picture> {
     let points = near_closed(steady, name);
     if points.is_empty() {
         return None;
@@ -63,7 +71,8 @@ pub(super) fn table(steady: &SteadyResult) -> Option<ReportTable> {
     let few: Vec<&str> = counted(steady).filter(|(_, n)| *n < FEWEST).map(|(name, _)| name).collect();
     let headings = ["<pair", "x [mm]", "y [mm]", "z [mm]", "N [N]", "F₁ [N]", "F₂ [N]", "δ [µm]", "<state"];
     let mut table = ReportTable::new("Contact points at steady sliding", &headings);
-    for ((pair, place), state) in steady.points.iter().zip(&steady.state.points) {
+    let states = steady.states();
+    for (((pair, place), state), word) in steady.points.iter().zip(&steady.state.points).zip(states) {
         if !few.contains(&pair.as_str()) {
             continue;
         }
@@ -72,7 +81,7 @@ pub(super) fn table(steady: &SteadyResult) -> Option<ReportTable> {
         cells.push(significant(state.forces.normal, 4));
         cells.extend(state.forces.friction.map(|f| significant(f, 4)));
         cells.push(significant(1e6 * state.penetration, 4));
-        cells.push(if state.closed() { "closed" } else { "open" }.into());
+        cells.push(word.into());
         table.row(cells, false);
     }
     (!table.rows.is_empty()).then(|| table.without_columns(super::table::idle))
@@ -93,16 +102,16 @@ fn width(points: &[PlacedPoint], direction: ViewVector) -> f64 {
 
 /// The points of a pair near its closed ones: the far side of a rim, for one, says nothing.
 fn near_closed<'a>(steady: &'a SteadyResult, pair: &str) -> Vec<PlacedPoint<'a>> {
-    let all = steady.points.iter().zip(&steady.state.points).zip(steady.pressures());
+    let all = steady.points.iter().zip(&steady.state.points).zip(&steady.areas);
     let of_pair = all.filter(|(((name, _), _), _)| name == pair);
     let all: Vec<PlacedPoint> =
-        of_pair.map(|(((_, place), state), pressure)| (*place, state, pressure)).collect();
+        of_pair.map(|(((_, place), state), area)| (*place, state, area.filter(|area| *area > 0.0))).collect();
     let reach = AXES.iter().map(|(direction, _)| width(&all, *direction)).fold(1e-3, f64::max);
+    let spans = AXES.map(|(direction, _)| (direction, span(&all, direction)));
     let near = |place: ViewVector| {
-        AXES.iter().all(|(direction, _)| {
-            let [low, high] = span(&all, *direction);
-            (low - reach..=high + reach).contains(&dot(place, *direction))
-        })
+        spans
+            .iter()
+            .all(|(direction, [low, high])| (low - reach..=high + reach).contains(&dot(place, *direction)))
     };
     all.iter().copied().filter(|(place, ..)| near(*place)).collect()
 }
@@ -194,7 +203,7 @@ mod tests {
         assert!(within((marks.iter().map(|m| m.force).sum::<f64>() - 20.0).abs(), 1e-9, RoundOff));
         assert_eq!(marks.iter().filter(|m| m.ahead).count(), 7);
         assert!(table(steady).is_none());
-        let svg = picture(&results).unwrap().svg;
+        let svg = pictures(steady)[0].svg.clone();
         assert!(svg.contains("ΣN = 20.00 N on 6 closed points of 14") && !svg.contains("NaN"));
     }
 
@@ -208,8 +217,10 @@ mod tests {
         assert_eq!(listed.rows.len(), 3);
         let state = |k: usize| listed.rows[k].cells.last().unwrap().clone();
         let closed = steady.state.points[1].closed();
-        assert_eq!(state(1), if closed { "closed" } else { "open" });
-        assert!(picture(&results).is_none());
+        assert_eq!(state(1), if closed { "sliding" } else { "open" });
+        assert!(pictures(steady).is_empty());
+        steady.pairs[0].2 = 0.0;
+        assert!(steady.states().all(|word| word != "sliding"));
     }
 
     #[test]
@@ -222,6 +233,6 @@ mod tests {
             .points
             .iter_mut()
             .for_each(|p| p.forces.normal = 0.0);
-        assert!(picture(&results).is_none());
+        assert!(pictures(results.get::<SteadyResult>().unwrap()).is_empty());
     }
 }

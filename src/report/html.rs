@@ -166,7 +166,7 @@ pub(super) fn rows(content: &ReportTable, caption: &str) -> String {
     let headings: String = content
         .columns
         .iter()
-        .map(|c| format!("<th scope=\"col\"{}>{}</th>", class(c), escape(c.heading)))
+        .map(|c| format!("<th scope=\"col\"{}>{}</th>", class(c), escape(&c.heading)))
         .collect();
     text += &format!("<thead><tr>{headings}</tr></thead>\n<tbody>\n");
     for row in &content.rows {

@@ -3,7 +3,7 @@
 //! * [`text`]: the tables that the command line prints.
 //! * [`write_validation`]: the page of the validation suite.
 //! * [`write_report`]: `report.html` and the pictures `rig.svg`, `modes_disc.svg`, `contact.svg`, `growth.svg`,
-//!   `growth_budget.svg`, `participation.svg`, `sensitivity.svg`, `advice.svg`, `transient.svg`, `transient_spectrum.svg`,
+//!   `growth_budget.svg`, `participation.svg`, `part_shares.svg`, `sensitivity.svg`, `advice.svg`, `transient.svg`, `transient_spectrum.svg`,
 //!   `transient_spectrogram.svg`, `transient_phase.svg`, `transient_contact.svg`, `sound.svg`, `frf_<name>.svg`, those of them that the run has something for;
 //!   `mac_<name>.svg`, `frequencies_<name>.svg` and `measured_frf_<name>.svg` of measured data;
 //!   `sweep_<name>.svg`, `sweep_<name>_places.svg`, `root_locus_<name>.svg` and `map_<name>.svg` of every sweep and map;
@@ -38,6 +38,7 @@ mod html;
 mod lines;
 mod magnitude;
 mod page;
+mod part_shares;
 mod participation;
 mod plate;
 mod player;
@@ -115,7 +116,7 @@ mod tests {
         write_report(dir.path(), &sample::rig()).unwrap();
         let page = std::fs::read_to_string(dir.path().join("report.html")).unwrap();
         let files = "rig modes_disc mac_impact frequencies_impact measured_frf_hammer frf_hammer contact growth growth_budget \
-                     participation sensitivity advice transient transient_spectrum transient_spectrogram transient_phase \
+                     participation part_shares sensitivity advice transient transient_spectrum transient_spectrogram transient_phase \
                      transient_contact sound sweep_friction sweep_friction_places root_locus_friction map_friction_and_speed \
                      uncertainty_all uncertainty_all_growth uncertainty_all_scalars \
                      calibration_errors calibration_responses calibration_numbers";

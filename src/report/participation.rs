@@ -23,11 +23,11 @@ const BAR: f64 = 26.0;
 /// Width of a letter of a label, at most on average \[px\].
 const LETTER: f64 = 6.8;
 /// Light enough for dark letters; the same real mode has one colour in every bar.
-const FILLS: [&str; 12] = [
+pub(super) const FILLS: [&str; 12] = [
     "#9fc9e8", "#f5c98a", "#a5d9c4", "#e3b3d1", "#f2e58f", "#b9bfe6", "#f0b29c", "#c9d9a0", "#8fd3d9",
     "#d9c3a9", "#cfa9e0", "#b5c4cc",
 ];
-const OTHERS: &str = "#e2e5e9";
+pub(super) const OTHERS: &str = "#e2e5e9";
 
 /// The picture, when the run has complex modes.
 pub(super) fn picture(results: &RunResults) -> Option<Picture> {
@@ -61,7 +61,7 @@ pub(super) fn picture(results: &RunResults) -> Option<Picture> {
 }
 
 /// The unstable modes or, where there is none, those nearest to it; ascending in frequency.
-fn chosen(all: &[ComplexMode]) -> Vec<&ComplexMode> {
+pub(super) fn chosen(all: &[ComplexMode]) -> Vec<&ComplexMode> {
     let mut modes: Vec<&ComplexMode> = all.iter().filter(|m| m.growth_rate().is_finite()).collect();
     modes.sort_by(|a, b| b.growth_rate().total_cmp(&a.growth_rate()));
     let unstable = modes.iter().filter(|m| m.unstable()).count();

@@ -1,10 +1,10 @@
 //! Real modes beside the measured frequencies.
 
-use super::disc_modes;
 use super::finding::{Finding, FindingClass};
 use super::format::{fixed, given, hertz, power, signed, significant};
 use super::section::{Display, ReportSection};
 use super::table::{ReportTable, idle};
+use super::{disc_modes, part_shares};
 use crate::results::{MeasuredComparison, NamedModes, RunResults, file_name};
 
 /// The sets of real modes.
@@ -18,7 +18,9 @@ pub(super) fn sections(results: &RunResults) -> Vec<ReportSection> {
     let mut section = ReportSection::new(heading).findings([finding(&sets)]);
     section = section.pictures(disc_modes::picture(results));
     for set in sets {
-        section = section.tables(Display::Folded, [table(results, set)]).tables(Display::Proof, [proof(set)]);
+        section = section.tables(Display::Folded, [table(results, set)]);
+        section = section.tables(Display::Closed, part_shares::real_table(set));
+        section = section.tables(Display::Proof, [proof(set)]);
     }
     vec![section]
 }

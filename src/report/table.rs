@@ -1,6 +1,7 @@
 //! A table with its caption, once for the terminal and the page.
 
 use crate::dataset;
+use std::borrow::Cow;
 
 /// A table with its caption and the notes below it.
 #[derive(Debug, Clone, PartialEq)]
@@ -18,7 +19,7 @@ pub(super) struct ReportTable {
 /// A column's heading and whether it holds words (set left) or numbers (set right).
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct ReportColumn {
-    pub heading: &'static str,
+    pub heading: Cow<'static, str>,
     pub words: bool,
 }
 
@@ -33,8 +34,8 @@ impl ReportTable {
     /// An empty table; a heading that begins with `<` is that of a column of words.
     pub(super) fn new(caption: impl Into<String>, headings: &[&'static str]) -> Self {
         let column = |heading: &&'static str| match heading.strip_prefix('<') {
-            Some(heading) => ReportColumn { heading, words: true },
-            None => ReportColumn { heading, words: false },
+            Some(heading) => ReportColumn { heading: heading.into(), words: true },
+            None => ReportColumn { heading: (*heading).into(), words: false },
         };
         ReportTable {
             caption: caption.into(),
@@ -71,7 +72,8 @@ impl ReportTable {
         table.file.clone_from(&data.file);
         let shown = data.columns.iter().filter_map(|column| column.shown.as_ref());
         let shown: Vec<_> = shown.filter(|shown| choose(shown)).collect();
-        let column = |shown: &&dataset::Shown| ReportColumn { heading: shown.heading, words: shown.words };
+        let column =
+            |shown: &&dataset::Shown| ReportColumn { heading: shown.heading.into(), words: shown.words };
         table.columns.extend(shown.iter().map(column));
         for k in 0..data.rows.length {
             let number = numbered.then(|| (k + 1).to_string());
@@ -119,7 +121,7 @@ mod tests {
         table.row(["1", "0.0", "", "0"].map(String::from).to_vec(), false);
         table.row(["2", "0.00", "–", "−0.1"].map(String::from).to_vec(), false);
         let table = table.without_columns(idle);
-        let headings: Vec<&str> = table.columns.iter().map(|column| column.heading).collect();
+        let headings: Vec<&str> = table.columns.iter().map(|column| &*column.heading).collect();
         assert_eq!(
             (headings, &table.rows[1].cells[..]),
             (vec!["f", "both"], &["2".into(), "−0.1".to_string()][..])

@@ -27,7 +27,7 @@ pub(super) fn render(table: &ReportTable, width: Option<usize>) -> String {
         None => format!("{}\n", table.caption),
     };
     for columns in &blocks {
-        let headings: Vec<&str> = table.columns.iter().map(|column| column.heading).collect();
+        let headings: Vec<&str> = table.columns.iter().map(|column| &*column.heading).collect();
         text += &lines(table, &headings, &widths, columns, ' ');
         let rule: usize = columns.iter().map(|c| widths[*c] + BETWEEN).sum();
         text += &format!(" {}\n", "─".repeat(rule - 1));
@@ -45,7 +45,7 @@ pub(super) fn render(table: &ReportTable, width: Option<usize>) -> String {
 /// The widths of the columns, and the columns of each block.
 fn layout(table: &ReportTable, shown: usize, width: usize) -> (Vec<usize>, Vec<Vec<usize>>) {
     let all: Vec<usize> = (0..table.columns.len()).collect();
-    let mut widths: Vec<usize> = table.columns.iter().map(|column| length(column.heading)).collect();
+    let mut widths: Vec<usize> = table.columns.iter().map(|column| length(&column.heading)).collect();
     for row in &table.rows[..shown] {
         widths.iter_mut().zip(&row.cells).for_each(|(width, cell)| *width = (*width).max(length(cell)));
     }

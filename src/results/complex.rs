@@ -1,9 +1,10 @@
 //! Complex modes, the count of the unstable ones, and the second method beside them.
 
-use super::NodalField;
 use super::real_modes::SHAPE_UNITS;
+use super::{NodalField, PartMode, PartShares};
 use crate::dataset::{Column, Describe, Dimension, Group, Table, Values, Variable, column};
 use crate::linalg::c64;
+use crate::modal::DiscModeName;
 use crate::numbers::{growth, hertz, power, signed, significant};
 use crate::stability::{Certificate, CloseCall, ComplexMode, ComplexModes, Confirmation, ROUND_OFF, Verdict};
 use crate::structure::DofMap;
@@ -22,6 +23,10 @@ pub struct ComplexResult {
     /// Names of the real modes, in the order that [`ComplexMode::participation`](crate::stability::ComplexMode)
     /// counts them: `disc (0, 1)`, `mode 1718 Hz`.
     pub real_modes: Vec<String>,
+    /// The name of the motion of the disc in each mode, where it moves and has one.
+    pub discs: Vec<Option<DiscModeName>>,
+    /// Shares of the parts in each mode; `None` of imported matrices.
+    pub shares: Option<PartShares>,
     /// Frequencies that measurements show squealing \[Hz\], with their source; may be empty.
     pub measured_squeal_hz: Vec<(f64, String)>,
     /// Frequency band of the analysis \[Hz\].
@@ -32,79 +37,103 @@ pub struct ComplexResult {
     pub confirmation: Option<Confirmation>,
 }
 
-/// A complex mode with the words on its real modes.
-type ComplexModeRow<'a> = (&'a ComplexMode, &'a str);
+/// A complex mode with the words on its real modes, the name of its disc's motion, and the mode of a part that it is like.
+type ComplexModeRow<'a> = (&'a ComplexMode, &'a str, Option<DiscModeName>, Option<&'a PartMode>);
 
 fn columns<'a>() -> Vec<Column<ComplexModeRow<'a>>> {
     vec![
-        column("frequency_hz", "Hz", "ω/2π", |(m, _): &ComplexModeRow| m.frequency_hz())
-            .shown("f [Hz]", |(m, _)| hertz(m.frequency_hz(), 1)),
+        column("frequency_hz", "Hz", "ω/2π", |(m, ..): &ComplexModeRow| m.frequency_hz())
+            .shown("f [Hz]", |(m, ..)| hertz(m.frequency_hz(), 1)),
         column(
             "growth_rate",
             "1/s",
             "σ; the mode is unstable when it is positive",
-            |(m, _): &ComplexModeRow| m.growth_rate(),
+            |(m, ..): &ComplexModeRow| m.growth_rate(),
         )
-        .shown("σ [1/s]", |(m, _)| growth(m.growth_rate(), m.eigenvalue.norm(), ROUND_OFF)),
-        column("damping_ratio", "1", "ζ = −σ/|λ|", |(m, _): &ComplexModeRow| m.damping_ratio())
-            .shown("ζ [%]", |(m, _)| signed(100.0 * m.damping_ratio(), 3)),
+        .shown("σ [1/s]", |(m, ..)| growth(m.growth_rate(), m.eigenvalue.norm(), ROUND_OFF)),
+        column("damping_ratio", "1", "ζ = −σ/|λ|", |(m, ..): &ComplexModeRow| m.damping_ratio())
+            .shown("ζ [%]", |(m, ..)| signed(100.0 * m.damping_ratio(), 3)),
         column(
             "verdict",
             "text",
             "stable, unstable, undecided or not accurate",
-            |(m, _): &ComplexModeRow| m.verdict().word(),
+            |(m, ..): &ComplexModeRow| m.verdict().word(),
         )
-        .shown("", |(m, _)| match m.verdict() {
+        .shown("", |(m, ..)| match m.verdict() {
             Verdict::Stable => String::new(),
             Verdict::Undecided if m.is_zero() => "zero".into(),
             Verdict::Undecided => Verdict::Undecided.word().into(),
             alarming => alarming.word().to_uppercase(),
         }),
-        column("unstable", "1", "whether the mode is unstable", |(m, _): &ComplexModeRow| m.unstable()),
-        column("undecided", "1", "whether σ is within its error", |(m, _): &ComplexModeRow| {
+        column("unstable", "1", "whether the mode is unstable", |(m, ..): &ComplexModeRow| m.unstable()),
+        column("undecided", "1", "whether σ is within its error", |(m, ..): &ComplexModeRow| {
             m.verdict() == Verdict::Undecided
         }),
         column(
             "growth_structural_damping",
             "1/s",
             "part of σ by structural damping",
-            |(m, _): &ComplexModeRow| m.growth.structural_damping,
+            |(m, ..): &ComplexModeRow| m.growth.structural_damping,
         ),
         column(
             "growth_falling_friction",
             "1/s",
             "part of σ by friction that falls with speed",
-            |(m, _): &ComplexModeRow| m.growth.falling_friction,
+            |(m, ..): &ComplexModeRow| m.growth.falling_friction,
         ),
         column(
             "growth_transverse_friction",
             "1/s",
             "part of σ by friction across the sliding",
-            |(m, _): &ComplexModeRow| m.growth.transverse_friction,
+            |(m, ..): &ComplexModeRow| m.growth.transverse_friction,
         ),
         column(
             "growth_mode_coupling",
             "1/s",
             "part of σ by the unsymmetric stiffness",
-            |(m, _): &ComplexModeRow| m.growth.mode_coupling,
+            |(m, ..): &ComplexModeRow| m.growth.mode_coupling,
         ),
         column(
             "backward_error",
             "1",
             "η = ‖Q(λ)φ‖ / ((|λ|²‖M‖ + |λ|‖C‖ + ‖K‖)‖φ‖)",
-            |(m, _): &ComplexModeRow| m.backward_error,
+            |(m, ..): &ComplexModeRow| m.backward_error,
         )
-        .proof("η", |(m, _)| power(m.backward_error)),
-        column("eigenvalue_error", "1", "estimated |Δλ|/|λ|", |(m, _): &ComplexModeRow| {
+        .proof("η", |(m, ..)| power(m.backward_error)),
+        column("eigenvalue_error", "1", "estimated |Δλ|/|λ|", |(m, ..): &ComplexModeRow| {
             m.eigenvalue_error
         })
-        .proof("|Δλ|/|λ|", |(m, _)| power(m.eigenvalue_error)),
-        column("condition", "1", "condition number κ of λ", |(m, _): &ComplexModeRow| m.condition)
-            .proof("κ", |(m, _)| significant(m.condition, 2)),
-        column("participation", "text", "the real modes that take part", |(_, words): &ComplexModeRow| {
-            (*words).to_string()
-        })
-        .shown("real modes that take part", |(_, words)| (*words).to_string()),
+        .proof("|Δλ|/|λ|", |(m, ..)| power(m.eigenvalue_error)),
+        column("condition", "1", "condition number κ of λ", |(m, ..): &ComplexModeRow| m.condition)
+            .proof("κ", |(m, ..)| significant(m.condition, 2)),
+        column(
+            "nodal_diameters",
+            "1",
+            "nodal diameters of the motion of the disc, where that has a tenth of the kinetic energy",
+            |(_, _, disc, _): &ComplexModeRow| disc.map(|disc| disc.nodal_diameters),
+        ),
+        column("nodal_circles", "1", "nodal circles of that motion", |(_, _, disc, _): &ComplexModeRow| {
+            disc.map(|disc| disc.nodal_circles)
+        }),
+        column(
+            "part_mode",
+            "text",
+            "the most similar mode of a part alone, by kinetic energy times MAC",
+            |(.., alone): &ComplexModeRow| alone.map(|alone| alone.name.clone()),
+        ),
+        column(
+            "part_mode_mac",
+            "1",
+            "MAC with it at the nodes of the part",
+            |(.., alone): &ComplexModeRow| alone.map(|alone| alone.mac),
+        ),
+        column(
+            "participation",
+            "text",
+            "the real modes that take part",
+            |(_, words, ..): &ComplexModeRow| (*words).to_string(),
+        )
+        .shown("real modes that take part", |(_, words, ..)| (*words).to_string()),
     ]
 }
 
@@ -181,7 +210,7 @@ impl Describe for ComplexResult {
             column("frequency_hz", "Hz", "frequency", |(hz, _): &(f64, String)| *hz),
             column("source", "text", "source", |(_, source): &(f64, String)| source.clone()),
         ];
-        Group::new("cea", "complex eigenvalues at steady sliding")
+        let group = Group::new("cea", "complex eigenvalues at steady sliding")
             .with(Variable::reals("band_hz", "Hz", "band of the analysis", vec![Dimension::limits()], band))
             .value("unstable", "1", "unstable modes", count(Verdict::Unstable))
             .value("undecided", "1", "modes with σ within its error", count(Verdict::Undecided))
@@ -191,7 +220,11 @@ impl Describe for ComplexResult {
             .table(self.with_vectors())
             .optional("certificate", self.certificate.as_ref().map(certificate))
             .optional("second_method", self.confirmation.as_ref().map(second_method))
-            .table(Table::of("measured_squeal", "measurement", &squeal_columns, &squeal))
+            .table(Table::of("measured_squeal", "measurement", &squeal_columns, &squeal));
+        match &self.shares {
+            Some(shares) => group.table(shares.table("part_shares", "complex_modes_parts".into())),
+            None => group,
+        }
     }
 }
 
@@ -204,9 +237,12 @@ impl ComplexResult {
 
     /// The modes, one a row.
     pub(crate) fn mode_table(&self) -> Table<'static> {
-        let words = |k: usize| self.participation.get(k).map_or("", String::as_str);
-        let modes: Vec<ComplexModeRow> =
-            self.modes.modes.iter().enumerate().map(|(k, mode)| (mode, words(k))).collect();
+        let row = |(k, mode)| -> ComplexModeRow {
+            let words = self.participation.get(k).map_or("", String::as_str);
+            let alone = self.shares.as_ref().and_then(|shares| shares.part_mode(k));
+            (mode, words, self.discs.get(k).copied().flatten(), alone)
+        };
+        let modes: Vec<ComplexModeRow> = self.modes.modes.iter().enumerate().map(row).collect();
         Table::of("eigenvalues", "mode", &columns(), &modes).file("complex_modes")
     }
 

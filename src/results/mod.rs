@@ -46,6 +46,7 @@ mod lock;
 mod maps;
 #[cfg(feature = "hdf5")]
 mod maps_hdf5;
+mod part_shares;
 mod provenance;
 mod real_modes;
 pub mod record;
@@ -94,6 +95,7 @@ pub(crate) use folder::{FileNames, file_name, retire, write_atomically, write_re
 pub use frf::{FrfResponse, FrfResult, PlaceAndDirection, Resonance};
 pub use lock::FolderLock;
 pub use maps::MapResult;
+pub use part_shares::{MODAL, POINTS, PartMode, PartShare, PartShares};
 pub use provenance::{KEYS_OF_THE_RUN, Provenance};
 pub use real_modes::NamedModes;
 pub use record_size::{RecordSize, fits_in_memory, fits_on_disk};

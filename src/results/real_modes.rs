@@ -1,6 +1,6 @@
 //! Real modes of one part or of the whole.
 
-use super::{NodalField, file_name};
+use super::{NodalField, PartMode, PartShares, file_name};
 use crate::dataset::{Column, Describe, Dimension, Group, Table, Values, Variable, column};
 use crate::modal::{DiscModeName, RealModes};
 use crate::structure::DofMap;
@@ -28,6 +28,8 @@ pub struct NamedModes {
     pub total_mass: f64,
     /// ζ of each mode by the damping of the case.
     pub damping_ratio: Vec<f64>,
+    /// Shares of the parts in each mode; `None` of imported matrices.
+    pub shares: Option<PartShares>,
     /// Whether `modes_<set>.uff` is wanted.
     pub universal: bool,
 }
@@ -37,6 +39,9 @@ type RealModeRow<'a> = (&'a NamedModes, usize);
 
 fn columns<'a>() -> Vec<Column<RealModeRow<'a>>> {
     let name = |(set, k): &RealModeRow| set.names.get(*k).copied().flatten();
+    fn alone<'a>((set, k): &RealModeRow<'a>) -> Option<&'a PartMode> {
+        set.shares.as_ref()?.part_mode(*k)
+    }
     vec![
         column("frequency_hz", "Hz", "natural frequency ω/2π", |(set, k): &RealModeRow| {
             set.modes.frequency_hz(*k)
@@ -60,6 +65,12 @@ fn columns<'a>() -> Vec<Column<RealModeRow<'a>>> {
         column("damping_ratio", "1", "ζ by the damping of the case", |(set, k): &RealModeRow| {
             set.damping_ratio.get(*k).copied()
         }),
+        column("part_mode", "text", "the most similar mode of a part alone, by kinetic energy times MAC", {
+            move |mode: &RealModeRow| alone(mode).map(|alone| alone.name.clone())
+        }),
+        column("part_mode_mac", "1", "MAC with it at the nodes of the part", move |mode: &RealModeRow| {
+            alone(mode).map(|alone| alone.mac)
+        }),
         column(
             "backward_error",
             "1",
@@ -71,7 +82,14 @@ fn columns<'a>() -> Vec<Column<RealModeRow<'a>>> {
 
 impl Describe for NamedModes {
     fn describe(&self) -> Group<'_> {
-        Group::new("", "").list("mode_sets", vec![self.summary()]).parts("modes", "set", vec![self.table()])
+        let group = Group::new("", "").list("mode_sets", vec![self.summary()]).parts(
+            "modes",
+            "set",
+            vec![self.table()],
+        );
+        let Some(shares) = &self.shares else { return group };
+        let file = file_name("mode_parts", &self.name);
+        group.parts("part_shares", "set", vec![shares.table(&self.name, file)])
     }
 }
 

@@ -4,6 +4,7 @@ use super::NodalField;
 use crate::dataset::{Column, Describe, Dimension, Group, Table, Values, Variable, column};
 use crate::equilibrium::{PointState, SteadySliding};
 use crate::numbers::{given, significant};
+use std::collections::BTreeMap;
 
 /// Steady sliding, for people.
 #[derive(Debug, Clone)]
@@ -59,8 +60,8 @@ fn pair_columns<'a>() -> Vec<Column<PairTotals<'a>>> {
     ]
 }
 
-/// The pair, the position, the pressure and the state of a contact point.
-type ContactPointRow<'a> = (&'a str, [f64; 3], Option<f64>, &'a PointState);
+/// The pair, the position, the pressure, the state in a word and as it is of a contact point.
+type ContactPointRow<'a> = (&'a str, [f64; 3], Option<f64>, &'static str, &'a PointState);
 
 fn point_columns<'a>() -> Vec<Column<ContactPointRow<'a>>> {
     vec![
@@ -77,7 +78,7 @@ fn point_columns<'a>() -> Vec<Column<ContactPointRow<'a>>> {
             "pressure_pa",
             "Pa",
             "p = N/A, of a point that stands for an area",
-            |(_, _, p, _): &ContactPointRow| *p,
+            |(_, _, p, ..): &ContactPointRow| *p,
         ),
         column(
             "friction_force_n",
@@ -89,6 +90,12 @@ fn point_columns<'a>() -> Vec<Column<ContactPointRow<'a>>> {
         column("closed", "1", "whether the point carries load", |(.., state): &ContactPointRow| {
             state.closed()
         }),
+        column(
+            "state",
+            "text",
+            "open; sticking, where the bodies do not slide; or sliding",
+            |(.., word, _): &ContactPointRow| *word,
+        ),
     ]
 }
 
@@ -99,9 +106,10 @@ fn directions() -> Dimension {
 
 impl Describe for SteadyResult {
     fn describe(&self) -> Group<'_> {
-        let places = self.points.iter().zip(&self.state.points).zip(self.pressures());
-        let points: Vec<ContactPointRow> =
-            places.map(|(((pair, position), state), p)| (&**pair, *position, p, state)).collect();
+        let places = self.points.iter().zip(&self.state.points).zip(self.pressures()).zip(self.states());
+        let points: Vec<ContactPointRow> = places
+            .map(|((((pair, position), state), p), word)| (&**pair, *position, p, word, state))
+            .collect();
         let mut points =
             Table::of("points", "point", &point_columns(), &points).file("contact_points").long();
         let rows = points.rows.clone();
@@ -196,6 +204,19 @@ impl SteadyResult {
             .iter()
             .zip(&self.areas)
             .map(|(state, area)| area.filter(|area| *area > 0.0).map(|area| state.forces.normal / area))
+    }
+
+    /// Whether each contact point is `open`, `sticking` or `sliding`: closed points stick where the sliding velocity of their pair is zero.
+    pub fn states(&self) -> impl Iterator<Item = &'static str> + '_ {
+        let slides: BTreeMap<&str, bool> =
+            self.pairs.iter().map(|(name, _, velocity)| (&**name, *velocity != 0.0)).collect();
+        self.points.iter().zip(&self.state.points).map(move |((pair, _), state)| {
+            match (state.closed(), slides.get(pair.as_str())) {
+                (false, _) => "open",
+                (true, Some(false)) => "sticking",
+                (true, _) => "sliding",
+            }
+        })
     }
 
     /// The sums over each pair, in the order of [`SteadyResult::pairs`].

@@ -85,7 +85,7 @@ fn damping(material: &Material) -> (RayleighDamping, f64) {
 
 /// Work arrays of the element loop.
 #[derive(Debug, Default)]
-struct Workspace {
+pub(super) struct Workspace {
     reduction: Reduction,
     mass: ElementMatrix,
     stiffness: ElementMatrix,
@@ -94,7 +94,7 @@ struct Workspace {
 
 impl Workspace {
     /// Adds M, K, C and η K of an element on the free degrees of freedom that it couples.
-    fn add_matrices(
+    pub fn add_matrices(
         &mut self,
         dofs: &DofMap,
         element: &dyn FiniteElement,

@@ -3,7 +3,7 @@
 //! A [`Model`] is plain data. [`assemble`] checks it, finds its free degrees of freedom u = T q ([`DofMap`]), adds up
 //! the [`elements`] and gives M = Tᵀ (Σ M_e) T, and K and C likewise, with the map from free degrees of freedom back
 //! to nodes. [`Assembled::prestress`] gives the geometric stiffness of a static state, [`Assembled::rotating`] the terms of a
-//! steady rotation, [`Assembled::imported`] the same form to matrices of another program.
+//! steady rotation, [`PartForms`] the energies of each part in a motion, [`Assembled::imported`] the same form to matrices of another program.
 
 mod as_plate;
 mod assembly;
@@ -19,6 +19,7 @@ mod material;
 mod model;
 mod numbering;
 mod part;
+mod part_forms;
 mod properties;
 mod revolution;
 mod rotation;
@@ -42,6 +43,7 @@ pub use free::{FreePart, free_parts, is_free_along, unresisted_parts};
 pub use material::{Material, Orthotropic, RayleighDamping};
 pub use model::{Constraint, Coupling, InclinedSupport, Model, RigidLink, Support};
 pub use part::{Moved, Part, PartKind};
+pub use part_forms::{PartForms, PartMatrix};
 pub use properties::{
     Bar, Integration, PlateTheory, PointMass, Rotation, RotationAxis, Shell, Solid, Spring,
 };

@@ -30,13 +30,20 @@ pub struct Model {
 impl Model {
     /// The elements of it: parts, masses, springs.
     pub(super) fn elements(&self) -> Elements<'_> {
+        (0..=self.parts.len()).flat_map(|part| self.elements_of(part)).collect()
+    }
+
+    /// Those of the part of this index; beyond the parts, those of masses and springs.
+    pub(super) fn elements_of(&self, part: usize) -> Elements<'_> {
         let nodes = &self.nodes;
         let mut elements: Elements = Vec::new();
-        for part in &self.parts {
-            part.cells.iter().for_each(|cell| part.push_elements(cell, nodes, &mut elements));
+        match self.parts.get(part) {
+            Some(part) => part.cells.iter().for_each(|cell| part.push_elements(cell, nodes, &mut elements)),
+            None => {
+                elements.extend(self.masses.iter().map(|point| boxed(MassElement::new(point, nodes))));
+                elements.extend(self.springs.iter().map(|spring| boxed(SpringElement::new(spring))));
+            }
         }
-        elements.extend(self.masses.iter().map(|point| boxed(MassElement::new(point, nodes))));
-        elements.extend(self.springs.iter().map(|spring| boxed(SpringElement::new(spring))));
         elements
     }
 

@@ -234,7 +234,7 @@ fn split_off<'a, const K: usize>(rest: &mut [&'a mut [f64]; K], length: usize) -
 }
 
 /// Free degrees of freedom that an element couples, ascending.
-fn coupled_dofs(dofs: &DofMap, element: &dyn FiniteElement) -> Vec<usize> {
+pub(super) fn coupled_dofs(dofs: &DofMap, element: &dyn FiniteElement) -> Vec<usize> {
     let components = element.components();
     let freedoms = element.nodes().iter().flat_map(|node| components.iter().map(|dof| (*node, *dof)));
     let mut list: Vec<usize> = freedoms

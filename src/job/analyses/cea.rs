@@ -4,8 +4,11 @@ use super::analysis::{Analysis, Planned, Scope};
 use crate::case::{Case, CeaAnalysis};
 use crate::error::Result;
 use crate::job::complex::complex_result;
+use crate::job::part_modes::{PartsAlone, compare_with_parts};
+use crate::job::part_shares::{complex_shares, moving_discs};
 use crate::job::prepared::Prepared;
 use crate::job::run::Run;
+use crate::results::NamedModes;
 
 /// Complex eigenvalue analysis.
 pub const CEA: Analysis = Analysis {
@@ -43,8 +46,15 @@ impl<'a> Planned<'a> for PlannedCea<'a> {
         run.basis()?;
         let (basis, left_vectors) = (run.basis.take(), run.left_vectors);
         let at = (run.prepared, steady);
-        let (complex, point) =
+        let (mut complex, point) =
             complex_result(at, self.wanted, basis, left_vectors, &mut run.clock, run.observer)?;
+        let (prepared, modes) = (run.prepared, &complex.modes.modes);
+        complex.shares = complex_shares(prepared, modes, point.system.structure.damping.modal.as_ref());
+        complex.discs = moving_discs(prepared, modes, complex.shares.as_ref());
+        if let Some(shares) = &mut complex.shares {
+            let alone = PartsAlone::of(prepared, &run.results.all::<NamedModes>());
+            compare_with_parts(shares, &alone, &complex.dofs, |k, i| modes[k].right[i]);
+        }
         run.results.warnings.extend(complex.modes.warnings.iter().cloned());
         run.operating_point = Some(point.into());
         run.found(complex)

@@ -8,9 +8,11 @@ use crate::job::compare::{Tests, has_measured_modes};
 use crate::job::modes::{
     check_part, contact_state, named, of_the_whole, part_modes, wanted, without_prestress,
 };
+use crate::job::part_modes::{PartsAlone, compare_with_parts, is_of_parts_alone};
 use crate::job::prepared::Prepared;
 use crate::job::run::Run;
 use crate::modal;
+use crate::results::NamedModes;
 use crate::system::System;
 
 /// Real modes.
@@ -66,11 +68,21 @@ impl<'a> Planned<'a> for Sets<'a> {
         // Those with closed contact wait for steady sliding.
         for state in [ContactState::Open, ContactState::Closed] {
             let of_state = |set: &ModesAnalysis| contact_state(self.prepared, set) == state;
-            for (name, set) in self.sets.iter().filter(|(_, set)| of_state(set)) {
-                let modes = match state {
+            let mut sets: Vec<_> = self.sets.iter().filter(|(_, set)| of_state(set)).collect();
+            // Modes of the whole are compared with those of its parts.
+            sets.sort_by_key(|(name, _)| !is_of_parts_alone(self.prepared, name));
+            for (name, set) in sets {
+                let mut modes = match state {
                     ContactState::Open => open(run, name, set),
                     ContactState::Closed => closed(run, name, set),
                 }?;
+                if let Some(shares) =
+                    modes.shares.as_mut().filter(|_| !is_of_parts_alone(self.prepared, name))
+                {
+                    let alone = PartsAlone::of(self.prepared, &run.results.all::<NamedModes>());
+                    let shape = |k: usize, i: usize| modes.modes.shapes[(i, k)].into();
+                    compare_with_parts(shares, &alone, &modes.dofs, shape);
+                }
                 let compared = self.tests.modes(set, &modes);
                 run.found(modes)?;
                 compared.into_iter().try_for_each(|comparison| run.found(comparison))?;
@@ -81,20 +93,20 @@ impl<'a> Planned<'a> for Sets<'a> {
 }
 
 /// Real modes without contact. Lists of the whole's modes take their share of those that span the complex analysis, where nothing rotates.
-fn open(run: &mut Run, name: &str, set: &ModesAnalysis) -> Result<crate::results::NamedModes> {
+fn open(run: &mut Run, name: &str, set: &ModesAnalysis) -> Result<NamedModes> {
     let prepared = run.prepared;
     if of_the_whole(prepared, set)
         && prepared.model.rotations.is_empty()
         && let Some(basis) = run.basis()?
         && let Some(modes) = basis.lowest(wanted(set, prepared.system.n_dofs()))
     {
-        return Ok(named(prepared, name, modes, &prepared.assembled));
+        return Ok(named(prepared, name, modes, (&prepared.model, &prepared.assembled)));
     }
     run.timed(&format!("real modes, {name}"), |observer| part_modes(prepared, name, observer))
 }
 
 /// Real modes with the contact as it is in steady sliding, at rest for the rest.
-fn closed(run: &mut Run, name: &str, set: &ModesAnalysis) -> Result<crate::results::NamedModes> {
+fn closed(run: &mut Run, name: &str, set: &ModesAnalysis) -> Result<NamedModes> {
     let prepared = run.prepared;
     let steady = run.steady()?;
     let system = System { structure: prepared.assembled.structure.clone(), ..prepared.system.clone() };
@@ -102,5 +114,5 @@ fn closed(run: &mut Run, name: &str, set: &ModesAnalysis) -> Result<crate::resul
     let wanted = wanted(set, prepared.system.n_dofs());
     let phase = format!("real modes, {name}");
     let (modes, _) = run.timed(&phase, |observer| modal::compute(&structure, wanted, observer))?;
-    Ok(named(prepared, name, modes, &prepared.assembled))
+    Ok(named(prepared, name, modes, (&prepared.model, &prepared.assembled)))
 }

@@ -304,7 +304,7 @@ impl SolvedStructure<'_> {
     fn of(&self, other: &Prepared) -> Result<Neighbour> {
         match self {
             SolvedStructure::Part(name, sensors) => {
-                let assembled = part_assembled(other, name)?;
+                let (_, assembled) = part_assembled(other, name)?;
                 let forms = |s: &Sensors| s.forms(&other.model.nodes, &assembled.dofs);
                 Ok(Neighbour { seen: sensors.as_ref().map(forms).unwrap_or_default(), assembled })
             }

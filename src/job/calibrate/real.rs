@@ -38,7 +38,7 @@ impl Solved {
         sensors: Option<Sensors>,
         like: Option<&Solved>,
     ) -> Result<Solved> {
-        let assembled = part_assembled(prepared, name)?;
+        let (model, assembled) = part_assembled(prepared, name)?;
         let (modes, factor) = modal::compute(&assembled.structure, ModesWanted::BelowHz(below_hz), &())?;
         let scale = prepared.case.modes[name].frequency_scale;
         let observation = sensors.map(|sensors| Observation {
@@ -47,7 +47,7 @@ impl Solved {
         });
         let mut solved = Solved { assembled, modes, scale, names: None, observation };
         if like.is_none_or(|like| like.n_dofs() != solved.n_dofs()) {
-            let identities = identify(prepared, &solved.modes, &solved.assembled);
+            let identities = identify(prepared, &solved.modes, (&model, &solved.assembled));
             let labels = labels(&identities, &solved.modes);
             solved.names = Some((identities, labels));
         }

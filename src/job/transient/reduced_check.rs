@@ -176,6 +176,8 @@ mod tests {
             dofs: Arc::new(DofMap::given(vec![], vec![])),
             participation: vec![],
             real_modes: vec![],
+            discs: vec![],
+            shares: None,
             measured_squeal_hz: vec![],
             band_hz: [0.0, top],
             certificate: None,
