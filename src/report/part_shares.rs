@@ -10,7 +10,7 @@ use super::section::Picture;
 use super::svg::{Key, Sheet, fill, ink, outlined};
 use super::table::{ReportColumn, ReportTable};
 use crate::modal::DiscModeName;
-use crate::results::{ComplexResult, NamedModes, PartShare, PartShares, file_name};
+use crate::results::{ComplexResult, MODAL, NamedModes, POINTS, PartShare, PartShares, file_name};
 
 /// Parts with columns and colours of their own; the others are one.
 const MOST: usize = 8;
@@ -44,6 +44,11 @@ fn columns(shares: &PartShares) -> (Vec<usize>, Vec<usize>) {
     all.sort_unstable();
     others.sort_unstable();
     (all, others)
+}
+
+/// Whether there are parts to share between.
+fn several(shares: &PartShares) -> bool {
+    shares.parts.iter().filter(|part| ![POINTS, MODAL].contains(&part.as_str())).count() > 1
 }
 
 /// The sum of the shares of some parts; `None` where there are none.
@@ -114,7 +119,7 @@ fn table(caption: String, headings: &[&'static str], modes: Vec<Mode>, shares: &
 
 /// That of a set of real modes of several parts.
 pub(super) fn real_table(set: &NamedModes) -> Option<ReportTable> {
-    let shares = set.shares.as_ref().filter(|shares| shares.parts.len() > 1 && !set.modes.is_empty())?;
+    let shares = set.shares.as_ref().filter(|shares| several(shares) && !set.modes.is_empty())?;
     let mode = |k: usize| {
         let ratio = set.damping_ratio.get(k).map_or("–".into(), |ratio| fixed(100.0 * ratio, 3));
         let before = vec![(k + 1).to_string(), hertz(set.modes.frequency_hz(k), 1), ratio];
@@ -148,7 +153,7 @@ pub(super) fn complex_table(complex: &ComplexResult) -> Option<ReportTable> {
 
 /// Bars of the shares in the unstable modes or, where there is none, in those nearest to it.
 pub(super) fn picture(complex: &ComplexResult) -> Option<Picture> {
-    let shares = complex.shares.as_ref().filter(|shares| shares.parts.len() > 1)?;
+    let shares = complex.shares.as_ref().filter(|shares| several(shares))?;
     let modes = chosen(&complex.modes.modes);
     let unstable = modes.first()?.unstable();
     let (own, others) = columns(shares);
