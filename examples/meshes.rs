@@ -1,7 +1,7 @@
 //! Writes the generated meshes of the folder `meshes/`, in millimetres.
 
 use std::path::Path;
-use stridor::mesh::generate::{PadOnDiscSpec, RigSpec, pad_on_disc, rig, solid_brake};
+use stridor::mesh::generate::{PadOnDiscSpec, RigSpec, disc_brake, pad_on_disc, rig, solid_brake};
 use stridor::mesh::{Info, write};
 
 fn main() -> Result<(), stridor::error::Error> {
@@ -11,6 +11,7 @@ fn main() -> Result<(), stridor::error::Error> {
         ("rig-medium.msh", rig(&RigSpec::medium())?),
         ("pad-on-disc.msh", pad_on_disc(&PadOnDiscSpec::example())?),
         ("solid-brake.msh", solid_brake()?),
+        ("disc-brake.msh", disc_brake()?),
     ] {
         write(&folder.join(name), &mesh, 0.001)?;
         println!("{name}\n{}", Info::of(&mesh));

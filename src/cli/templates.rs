@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::mesh::Mesh;
-use crate::mesh::generate::{PadOnDiscSpec, RigSpec, pad_on_disc, rig, solid_brake};
+use crate::mesh::generate::{PadOnDiscSpec, RigSpec, disc_brake, pad_on_disc, rig, solid_brake};
 use clap::ValueEnum;
 use std::path::Path;
 
@@ -15,6 +15,8 @@ pub enum Template {
     Pad,
     /// A pad of solids on the face of a disc of solids
     Solid,
+    /// A disc between two pads in a floating calliper, of solids joined by ties
+    Brake,
     /// Two degrees of freedom on a belt, without a mesh
     TwoDof,
     /// Matrices M, C, K of another program, with terms that depend on the speed
@@ -70,6 +72,10 @@ impl Template {
             Template::Solid => {
                 let case = include_str!("../../validation/solid-brake/case.toml");
                 meshed(case, "solid-brake.msh", "brake.msh", solid_brake)
+            }
+            Template::Brake => {
+                let case = include_str!("../../validation/disc-brake/case.toml");
+                meshed(case, "disc-brake.msh", "brake.msh", disc_brake)
             }
             Template::TwoDof => plain(include_str!("../../validation/two-dof/case.toml"), &[]),
             Template::Imported => plain(

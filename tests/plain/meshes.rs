@@ -2,11 +2,15 @@
 
 use std::path::Path;
 use stridor::bounds::{Origin::*, within};
-use stridor::mesh::generate::{PadOnDiscSpec, RigSpec, pad_on_disc, rig, solid_brake};
+use stridor::mesh::generate::{PadOnDiscSpec, RigSpec, disc_brake, pad_on_disc, rig, solid_brake};
 use stridor::mesh::{Mesh, diagnose_apart, read};
 
+fn stored(name: &str) -> Mesh {
+    read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("meshes").join(name), 0.001).unwrap()
+}
+
 fn committed(name: &str) -> Mesh {
-    let mesh = read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("meshes").join(name), 0.001).unwrap();
+    let mesh = stored(name);
     let diagnosis = diagnose_apart(&mesh, &[["pad_face", "disc_face"]]);
     assert!(diagnosis.warnings.is_empty(), "{name}: {:?}", diagnosis.warnings);
     mesh
@@ -30,4 +34,5 @@ fn committed_meshes_are_those_of_the_generator() {
     same(&committed("rig-medium.msh"), &rig(&RigSpec::medium()).unwrap());
     same(&committed("pad-on-disc.msh"), &pad_on_disc(&PadOnDiscSpec::example()).unwrap());
     same(&committed("solid-brake.msh"), &solid_brake().unwrap());
+    same(&stored("disc-brake.msh"), &disc_brake().unwrap());
 }

@@ -342,6 +342,7 @@ fn every_template_is_valid_and_runs() {
         ("rig", "report.html"),
         ("pad", "growth.svg"),
         ("solid", "complex_modes.csv"),
+        ("brake", "complex_modes.csv"),
         ("two-dof", "complex_modes.csv"),
         ("imported", "sensitivity.svg"),
         ("transient", "transient.csv"),

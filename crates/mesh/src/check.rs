@@ -63,8 +63,8 @@ pub fn diagnose_apart(mesh: &Mesh, pairs: &[[&str; 2]]) -> Diagnosis {
     for region in &mesh.regions {
         check_duplicates(mesh, region, &mut diagnosis.faults);
         check_orientation(mesh, region, &mut diagnosis.faults);
-        check_pieces(mesh, region, &mut diagnosis.warnings);
     }
+    check_pieces(mesh, &mut diagnosis.warnings);
     diagnosis
 }
 
@@ -351,16 +351,19 @@ fn check_orientation(mesh: &Mesh, region: &Region, faults: &mut Faults) {
     }
 }
 
-fn check_pieces(mesh: &Mesh, region: &Region, warnings: &mut Vec<Fault>) {
-    let pieces = count_pieces(mesh, region);
-    if region.dimension > 0 && pieces > 1 {
+/// Regions that may be parts and are in pieces, in one warning: of a mesh with solids these alone, as surfaces often are.
+fn check_pieces(mesh: &Mesh, warnings: &mut Vec<Fault>) {
+    let solids = mesh.regions.iter().any(|region| region.dimension == 3);
+    let parts = mesh.regions.iter().filter(|region| region.dimension >= if solids { 3 } else { 1 });
+    let counts =
+        parts.map(|region| (&region.name, count_pieces(mesh, region))).filter(|(_, pieces)| *pieces > 1);
+    let (names, pieces): (Vec<_>, Vec<_>) =
+        counts.map(|(name, pieces)| (format!("`{name}`"), pieces.to_string())).unzip();
+    if !names.is_empty() {
+        let place = format!("region{} {}", if names.len() > 1 { "s" } else { "" }, names.join(", "));
+        let found = format!("{} pieces that share no node", pieces.join(", "));
         warnings.push(
-            Fault::new(
-                format!("region `{}`", region.name),
-                format!("{pieces} pieces that share no node"),
-                "one",
-            )
-            .with_help("Where they should be one part, merge their nodes"),
+            Fault::new(place, found, "one").with_help("Where they should be one part, merge their nodes"),
         );
     }
 }

@@ -12,6 +12,7 @@
 //! `_y_max` (lines); `bar` (lines), `bar_root` and `bar_clamp` (points); `pad` like `slider`.
 
 mod disc;
+mod disc_brake;
 mod fill;
 mod grading;
 mod pad;
@@ -22,6 +23,7 @@ mod solid_brake;
 mod structured;
 
 pub use disc::{DiscSpec, disc};
+pub use disc_brake::disc_brake;
 pub use grading::Grading;
 pub use pad::{PadOnDiscSpec, pad_on_disc};
 pub use plate::{PlateSpec, plate};
