@@ -42,7 +42,7 @@ pub use matrices::{Factor, Matrices, MatrixTerm};
 pub use measured::{MeasuredData, Transform};
 pub use mesh::{AnnulusMesh, LengthUnit, MeshSource, PlateMesh, RigMesh};
 pub use model::{
-    Averaging, Axis, Bar, Force, Held, Mass, Profile, Rigid, Shell, Solid, SpringPer, SpringSet,
+    Averaging, Axis, Bar, Force, ForceChoice, Held, Mass, Profile, Rigid, Shell, Solid, SpringPer, SpringSet,
     StructureDamping, Tie,
 };
 pub use parameter::VariedCase;

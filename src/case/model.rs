@@ -256,12 +256,29 @@ impl Held {
 }
 
 declare! {
-    /// A force shared equally by the nodes of a region.
+    /// A force on a region, or a pressure on faces.
     pub struct Force {
         /// The region.
         pub on: String = key::name("a region"),
-        /// Total force \[N\], shared equally by the nodes of the region.
-        pub force: [f64; 3] = key::quantities(FORCE).expecting("three forces such as [0, \"1 N\", 0]"),
+        /// What acts on it.
+        pub load: ForceChoice = key::flat(),
+    }
+}
+
+variants! {
+    /// What acts on a region.
+    #[derive(Copy)]
+    pub enum ForceChoice by presence or "force" {
+        /// A force shared equally by the nodes.
+        Total "force" {
+            /// Total force \[N\], shared equally by the nodes of the region.
+            force: [f64; 3] = key::quantities(FORCE).expecting("three forces such as [0, \"1 N\", 0]"),
+        }
+        /// A pressure on faces of a solid.
+        Pressure "pressure" {
+            /// p \[Pa\], against the faces of a solid: positive where it presses.
+            pressure: f64 = key::quantity(PRESSURE).expecting("a pressure such as \"1 MPa\""),
+        }
     }
 }
 

@@ -24,6 +24,7 @@ mod explore;
 mod export;
 #[cfg(feature = "cli")]
 mod folder;
+mod forces;
 mod frf;
 mod imported;
 mod known;

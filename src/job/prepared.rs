@@ -2,6 +2,7 @@
 
 use super::contacts::{arrows, contact_pairs};
 use super::discs::discs;
+use super::forces::external_load;
 use super::imported::read_model;
 use super::links::in_terms_of_the_case;
 use super::mesh::{CaseFiles, read_mesh, same_mesh};
@@ -80,7 +81,7 @@ impl<'a> Prepared<'a> {
         let system = System {
             structure,
             pairs,
-            load: external_load(case, &regions, &assembled)?,
+            load: external_load(case, &regions, &model, &assembled)?,
             prestress: case.prestress.then(|| Arc::new(assembled.prestress(model.clone())) as Arc<_>),
             coupling,
         };
@@ -169,21 +170,6 @@ impl<'a> Prepared<'a> {
     pub fn discs(&self) -> Vec<(&str, Disc)> {
         discs(&self.model)
     }
-}
-
-/// The external force on the degrees of freedom \[N\].
-pub fn external_load(case: &Case, regions: &Regions, assembled: &Assembled) -> Result<Vec<f64>> {
-    let mut load = vec![0.0; assembled.dofs.n_dofs()];
-    let mut faults = Faults::new();
-    for (name, force) in &case.force {
-        let nodes = faults.take(regions.nodes(&force.on, &format!("`force.{name}.on`"))).unwrap_or_default();
-        for node in &nodes {
-            let share = force.force.map(|f| f / nodes.len() as f64);
-            let entries: Vec<_> = share.iter().enumerate().map(|(axis, f)| (*node, axis, *f)).collect();
-            assembled.dofs.reduce(&entries).add_to(1.0, &mut load);
-        }
-    }
-    faults.into_result(load)
 }
 
 #[cfg(test)]

@@ -1,7 +1,8 @@
 //! The scalars of a case as something to differentiate by: which can be, in what steps, and the system they lead to.
 
 use super::contacts::with_laws;
-use super::prepared::{Prepared, external_load};
+use super::forces::external_load;
+use super::prepared::Prepared;
 use crate::case::{Case, Invalidates, Parameter, path_matches};
 use crate::error::{Error, Result};
 use crate::schema::Derivative;
@@ -127,7 +128,7 @@ impl CaseScalar {
         let system = &prepared.system;
         let case = prepared.case.with_parameter(&self.path, value)?;
         if self.kind != ScalarKind::Structure {
-            let load = external_load(&case, &prepared.regions, &prepared.assembled)?;
+            let load = external_load(&case, &prepared.regions, &prepared.model, &prepared.assembled)?;
             return Ok(System { pairs: with_laws(&system.pairs, &case)?, load, ..system.clone() });
         }
         let other = prepared.rebuilt(&case)?;

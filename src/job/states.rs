@@ -3,10 +3,11 @@
 use super::clock::Clock;
 use super::complex::band_modes;
 use super::contacts::with_laws;
+use super::forces::external_load;
 use super::known::Reference;
 use super::modes::add_modal_damping;
 use super::operating_point::OperatingPoint;
-use super::prepared::{Prepared, external_load};
+use super::prepared::Prepared;
 use super::studies::{SHARED, studies};
 use crate::case::{Case, CeaAnalysis, Invalidates, VariedCase};
 use crate::equilibrium::{self, PointState, SteadySolver, tangent_stiffness};
@@ -129,7 +130,7 @@ impl<'a> States<'a> {
         }
         let system = &prepared.system;
         let load = match self.forced {
-            true => Cow::Owned(external_load(case, &prepared.regions, &prepared.assembled)?),
+            true => Cow::Owned(external_load(case, &prepared.regions, &prepared.model, &prepared.assembled)?),
             false => Cow::Borrowed(&system.load),
         };
         let pairs = with_laws(&system.pairs, case)?;

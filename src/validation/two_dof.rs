@@ -2,7 +2,7 @@
 //! its own.
 
 use super::extrapolation::step;
-use crate::case::{Case, FrictionCurve, Sense};
+use crate::case::{Case, ForceChoice, FrictionCurve, Sense};
 use std::f64::consts::PI;
 
 /// m ẍ + (k₁ + k₂/2 + k_t) x − k₂/2 y = −F_f + p(t), m ÿ − k₂/2 x + k₂/2 y + N = F, with
@@ -47,6 +47,7 @@ impl TwoDof {
             FrictionCurve::Exponential { law } => [law.mu0, law.mu1, law.alpha],
             _ => return None,
         };
+        let ForceChoice::Total { force: [_, load, _] } = case.force.get("press")?.load else { return None };
         let push = case.transient.as_ref()?.push.get("knock")?;
         Some(TwoDof {
             mass: case.mass.get("block")?.mass,
@@ -57,7 +58,7 @@ impl TwoDof {
             velocity: contact.sliding.rate(),
             regularisation: contact.friction.regularisation,
             printed: contact.friction.sense == Sense::AgainstSliding,
-            load: case.force.get("press")?.force[1],
+            load,
             knock: [push.force[0], push.duration],
         })
     }

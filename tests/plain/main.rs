@@ -21,6 +21,7 @@ mod measured;
 mod meshes;
 mod mindlin;
 mod plates;
+mod pressure;
 mod properties;
 mod rig;
 mod rotation;

@@ -6,6 +6,7 @@ use crate::case::{FrictionCurve, SpringPer, TransientAnalysis};
 use crate::contact::Coulomb;
 use crate::error::{Error, Fault, Faults, Result};
 use crate::job::contacts::with_laws;
+use crate::job::forces::force_form;
 use crate::job::motion::{Motion, motion};
 use crate::job::prepared::Prepared;
 use crate::job::sound::acoustics;
@@ -88,9 +89,9 @@ pub fn places(prepared: &Prepared<'_>, wanted: &TransientAnalysis) -> Result<Tra
     });
     let mut pushes: Vec<Push> = pushes.collect();
     // What a force of the case has more or less than itself.
+    let on = (&prepared.regions, &prepared.model, &*prepared.assembled);
     pushes.extend(wanted.load.iter().filter_map(|(name, course)| {
-        let force = prepared.case.force.get(name)?;
-        let direction = reduced(&force.on, format!("`force.{name}.on`"), force.force);
+        let direction = faults.take(force_form(name, prepared.case.force.get(name)?, on))?;
         Some(Push { direction, course: Pulse::Change(profile(Some(course))) })
     }));
     let (mut probes, mut gauges) = (Vec::new(), Vec::new());

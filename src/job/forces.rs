@@ -1,0 +1,82 @@
+//! The forces of a case on the degrees of freedom.
+
+use super::regions::Regions;
+use crate::case::{Case, Force, ForceChoice};
+use crate::error::{Error, Fault, Faults, Result};
+use crate::linalg::SparseVector;
+use crate::structure::{Assembled, Model};
+
+/// Quadrature of a pressure on faces, exact on flat ones of second order.
+const DEGREE: usize = 4;
+
+/// The external force on the degrees of freedom \[N\].
+///
+/// # Errors
+/// Regions that are missing, pressures on what has no faces.
+pub fn external_load(
+    case: &Case,
+    regions: &Regions,
+    model: &Model,
+    assembled: &Assembled,
+) -> Result<Vec<f64>> {
+    let mut load = vec![0.0; assembled.dofs.n_dofs()];
+    let mut faults = Faults::new();
+    for (name, force) in &case.force {
+        if let Some(form) = faults.take(force_form(name, force, (regions, model, assembled))) {
+            form.add_to(1.0, &mut load);
+        }
+    }
+    faults.into_result(load)
+}
+
+/// `[force.NAME]` on the degrees of freedom \[N\].
+///
+/// # Errors
+/// As [`external_load`].
+pub fn force_form(
+    name: &str,
+    force: &Force,
+    (regions, model, assembled): (&Regions, &Model, &Assembled),
+) -> Result<SparseVector> {
+    let place = format!("`force.{name}.on`");
+    match force.load {
+        ForceChoice::Total { force: total } => {
+            Ok(assembled.dofs.mean_motion(&regions.nodes(&force.on, &place)?, total))
+        }
+        ForceChoice::Pressure { pressure } => {
+            pressed(pressure, &force.on, &place, (regions, model, assembled))
+        }
+    }
+}
+
+/// f = −p ∫ Nᵀn dA over faces of a solid, n outwards.
+fn pressed(
+    pressure: f64,
+    on: &str,
+    place: &str,
+    (regions, model, assembled): (&Regions, &Model, &Assembled),
+) -> Result<SparseVector> {
+    let region = regions.region(on, place)?;
+    let part = model.part_with(&regions.mesh.region_nodes(region)).filter(|part| part.as_shell().is_none());
+    let faces = match (region.dimension, part) {
+        (2, Some(part)) => part.outward(regions.cells(region)).map(|faces| (part, faces)),
+        _ => None,
+    };
+    let Some((part, faces)) = faces else {
+        let found = format!("region \"{on}\", which is not one of faces on the skin of a solid");
+        let fault = Fault::new(place, found, "faces of one of the case's solids, which a `pressure` acts on");
+        return Err(Error::input(fault.with_help("Push other regions by a `force`")));
+    };
+    let mut entries = Vec::new();
+    for face in &faces {
+        for point in face.kind().quadrature(DEGREE) {
+            let [a, b, _] = face.tangents(&model.nodes, point.at);
+            let area = [0, 1, 2].map(|k| a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3]);
+            let force = area.map(|n| -pressure * point.weight * n);
+            for (node, component, moved) in part.displacement_at(&model.nodes, face, point.at) {
+                entries.push((node, component, (0..3).map(|k| moved[k] * force[k]).sum()));
+            }
+        }
+    }
+    Ok(assembled.dofs.reduce(&entries))
+}
