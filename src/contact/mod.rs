@@ -9,6 +9,8 @@
 //! body on its counter-body, [`Sliding`] is how that one moves, [`Stations`] are the points of a pair whose counter-body travels.
 
 mod bristle;
+mod candidate;
+mod clip;
 mod coefficient;
 mod coulomb;
 pub mod friction;
@@ -18,6 +20,7 @@ pub mod normal;
 pub mod pairing;
 mod placement;
 mod projection;
+mod segments;
 mod sliding;
 mod slip;
 mod surfaces;

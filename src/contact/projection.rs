@@ -78,6 +78,23 @@ impl<'a> CounterSurface<'a> {
         Some(Foot { places, normal, height, over })
     }
 
+    /// The nearest point to `x` of one of the faces.
+    pub(super) fn foot_on(&self, face: usize, x: Vector) -> Foot {
+        let place = self.tree.nearest_on(face, x);
+        let normal = self.normal(&place);
+        Foot { places: vec![place], normal, height: dot(subtract(x, place.position), normal), over: true }
+    }
+
+    /// The faces that may reach into a box.
+    pub(super) fn faces_in(&self, low: Vector, high: Vector) -> Vec<usize> {
+        self.tree.faces_in(low, high)
+    }
+
+    /// How far the nearest of the faces is from `x` \[m\].
+    pub(super) fn distance(&self, x: Vector) -> f64 {
+        self.tree.nearest(x).first().map_or(f64::INFINITY, |place| place.distance)
+    }
+
     /// The unit normal of a face; zero where it has none.
     fn normal(&self, place: &LocatedPoint) -> Vector {
         let [a, b] = self.tree.tangents(place.face, place.at);

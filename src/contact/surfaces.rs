@@ -7,7 +7,7 @@ use crate::structure::Part;
 /// Two plates or solids that may touch.
 ///
 /// The *counter-body* (slider) offers the faces that look towards the body, of a plate half its thickness from its mid-surface;
-/// **n** is the outward normal there. The *body* (disc) touches with nodes of its edge, with the nodes of the faces of a plate, or the integration points of those of a solid.
+/// **n** is the outward normal there. The *body* (disc) touches with nodes of its edge, with the nodes of the faces of a plate, or with the faces of a solid.
 #[derive(Debug, Clone, Copy)]
 pub struct Surfaces<'a> {
     /// The name of the pair, for faults.
@@ -53,8 +53,8 @@ pub enum ContactSide<'a> {
     /// Lines on the edge of the plate, with one point a node at the middle of the thickness: the line contact of an
     /// infinitely thin rim, which knows no moment about the line.
     Middle(&'a [[usize; 2]]),
-    /// Faces of a solid as seen from outside counter-clockwise (a pad): points at their integration points, three of a triangle and 2 × 2 of a
-    /// quadrilateral, with the area that each stands for \[m²\]; where one point is wanted, the nearest node. Faces of a plate: one point a node,
+    /// Faces of a solid as seen from outside counter-clockwise (a pad): three points of a triangle and 2 × 2 of a
+    /// quadrilateral, three of what is partly beyond the counter-faces, with the area that each stands for \[m²\]; where one point is wanted, the nearest node. Faces of a plate: one point a node,
     /// h/2 towards the counter-body, with the node's tributary area \[m²\].
     Face(&'a [Cell]),
 }

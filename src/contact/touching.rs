@@ -1,50 +1,26 @@
-//! Where a body may touch: its nodes, or the integration points of its faces; and where each of these stands over the counter-faces.
+//! Where a body may touch: its nodes, or the faces of a solid ([`super::segments`]); and where these stand over the counter-faces.
 //!
 //! Plates touch with their nodes: they have so few motions that points that stick at the integration points of triangles would hold each of them
 //! several times, and share their forces in no definite way.
 
-use super::projection::{CounterSurface, Foot, Vector, add, area_vector, cross, dot, scale, unit};
+use super::candidate::{Candidate, FACING, On, Point, Sample};
+use super::projection::{CounterSurface, Vector, add, area_vector, cross, dot, scale, unit};
+use super::segments::segments;
 use super::surfaces::{ContactPatch, ContactSide, Surfaces};
 use super::tributary::tributary;
 use crate::error::{Error, Fault, Result};
 use crate::mesh::Cell;
 use crate::numbers::components;
-use crate::structure::Moved;
 use crate::structure::elements::{WeightedTriangle, split_face};
-
-/// Quadrature of faces, exact to this degree: a constant pressure is consistent on flat faces of second order.
-const DEGREE: usize = 2;
-/// Least cosine of the angle between the normals of the body and of the counter-face, turned against each other, at integration points that may touch: 60°.
-const FACING: f64 = 0.5;
 
 /// A place on the body, of a plate on its mid-surface, that may touch.
 pub(super) struct Touching<'a> {
-    pub(super) on: On<'a>,
+    on: On<'a>,
     pub(super) position: Vector,
-    /// The tributary length or area of a node, the area of an integration point.
+    /// The tributary length or area of a node, the area of a face.
     weight: f64,
     /// The unit normal of a plate; that of a face of a solid outwards.
     normal: Vector,
-}
-
-/// What of the body moves a place.
-#[derive(Clone, Copy)]
-pub(super) enum On<'a> {
-    Node(usize),
-    /// A face at its reference coordinates.
-    Face(&'a Cell, [f64; 3]),
-}
-
-/// A point that may be kept.
-pub(super) struct Candidate<'a> {
-    pub(super) place: &'a Touching<'a>,
-    /// From the place to the point.
-    pub(super) offset: Vector,
-    pub(super) position: Vector,
-    pub(super) weight: f64,
-    /// From the counter-face; over the tangent plane at its edge when the point stands beside it \[m\].
-    pub(super) gap: f64,
-    pub(super) foot: Foot,
 }
 
 /// The places of the body of a pair that may touch; `place` names the body in faults.
@@ -79,30 +55,34 @@ pub(super) fn touching<'a>(surfaces: &Surfaces<'a>, place: &str) -> Result<Vec<T
     if own.is_empty() {
         return Err(Error::input(Fault::new(place, "no line or face to touch with", "a region of the body")));
     }
-    let is_solid = surfaces.body.as_shell().is_none();
-    Ok(match (surfaces.side, surfaces.patch) {
-        (ContactSide::Face(faces), ContactPatch::Reach(_)) if is_solid => {
-            integration_points(surfaces.nodes, faces)
-        }
-        _ => nodes(surfaces, cells, &own),
+    Ok(match faces_within(surfaces) {
+        Some((faces, _)) => middles(surfaces.nodes, faces),
+        None => nodes(surfaces, cells, &own),
     })
 }
 
-/// The integration points of faces, with the area of each.
-fn integration_points<'a>(nodes: &[Vector], faces: &'a [Cell]) -> Vec<Touching<'a>> {
+/// The faces of a solid that touches with them, and their reach \[m\].
+fn faces_within<'a>(surfaces: &Surfaces<'a>) -> Option<(&'a [Cell], f64)> {
+    match (surfaces.side, surfaces.patch, surfaces.body.as_shell()) {
+        (ContactSide::Face(faces), ContactPatch::Reach(reach), None) => Some((faces, reach)),
+        _ => None,
+    }
+}
+
+/// The middle of each face.
+fn middles<'a>(nodes: &[Vector], faces: &'a [Cell]) -> Vec<Touching<'a>> {
     let on = |face: &'a Cell| {
-        face.kind().quadrature(DEGREE).into_iter().filter_map(move |point| {
-            let [a, b, _] = face.tangents(nodes, point.at);
-            let area = cross(a, b);
-            Some(Touching {
-                on: On::Face(face, point.at),
-                position: face.position(nodes, point.at),
-                weight: point.weight * dot(area, area).sqrt(),
-                normal: unit(area)?,
-            })
+        let [middle] = face.kind().quadrature(1)[..] else { return None };
+        let [a, b, _] = face.tangents(nodes, middle.at);
+        let area = cross(a, b);
+        Some(Touching {
+            on: On::Face(face, middle.at),
+            position: face.position(nodes, middle.at),
+            weight: middle.weight * dot(area, area).sqrt(),
+            normal: unit(area)?,
         })
     };
-    faces.iter().flat_map(on).collect()
+    faces.iter().filter_map(on).collect()
 }
 
 /// The `own` nodes of `cells`, with the tributary length or area of each.
@@ -127,19 +107,29 @@ fn nodes<'a>(surfaces: &Surfaces<'a>, cells: &[Cell], own: &[usize]) -> Vec<Touc
     own.iter().map(at).collect()
 }
 
-/// The points of the places, each with its foot on the counter-face. Integration points that do not face it are left out.
+/// The points of the places, with their feet on the counter-face. Faces of solids that do not face it are left out; where they are not over
+/// it at all, the middles of faces are left, whose feet say where they are.
 pub(super) fn candidates<'a>(
-    surfaces: &Surfaces<'_>,
+    surfaces: &Surfaces<'a>,
     counter: &CounterSurface<'_>,
-    touching: &'a [Touching<'a>],
+    touching: &[Touching<'a>],
 ) -> Vec<Candidate<'a>> {
+    if let Some((faces, reach)) = faces_within(surfaces) {
+        let found = segments(surfaces, counter, faces, reach);
+        if !found.is_empty() {
+            return found;
+        }
+    }
     let half = 0.5 * surfaces.body.thickness();
-    let at = |place: &'a Touching<'a>, h: f64, weight: f64| {
+    let at = |place: &Touching<'a>, h: f64, weight: f64| {
         let offset = scale(h, place.normal);
         let position = add(place.position, offset);
         let foot = counter.foot(position)?;
         let gap = foot.height - 0.5 * surfaces.counter.thickness();
-        Some(Candidate { place, offset, position, weight, gap, foot })
+        Some(Candidate {
+            samples: vec![Sample { on: place.on, offset, position, gap, foot }],
+            points: vec![Point { position, weight, shares: vec![1.0] }],
+        })
     };
     let mut all = Vec::new();
     for place in touching {
@@ -163,16 +153,4 @@ pub(super) fn candidates<'a>(
         }
     }
     all
-}
-
-impl Candidate<'_> {
-    /// The displacement of the place on the body.
-    pub(super) fn moved(&self, surfaces: &Surfaces<'_>) -> Vec<Moved> {
-        match self.place.on {
-            On::Node(node) => {
-                (0..6).map(|k| (node, k, std::array::from_fn(|i| f64::from(u8::from(i == k))))).collect()
-            }
-            On::Face(face, at) => surfaces.body.displacement_at(surfaces.nodes, face, at),
-        }
-    }
 }

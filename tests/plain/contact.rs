@@ -29,7 +29,7 @@ fn steady<T>(meshes: [Mesh; 2], tables: &str, see: impl Fn(&Prepared, &SteadySli
     write(&dir.path().join("a.msh"), &mesh, 1.0).unwrap();
     let text = format!(
         "[mesh]\nfile = \"a.msh\"\nunit = \"m\"\n[material.steel]\nyoungs_modulus = {E}\npoissons_ratio = {NU}\n\
-         density = 7850\n[solid.body]\nmaterial = \"steel\"\n[solid.counter]\nmaterial = \"steel\"\n{tables}\
+         density = 7850\n[solid.body]\nmaterial = \"steel\"\nallow_locking = true\n[solid.counter]\nmaterial = \"steel\"\nallow_locking = true\n{tables}\
          [modes.all]\ncount = 1\n"
     );
     let case = Case::parse("a.toml", &text, dir.path().into()).unwrap();
@@ -116,30 +116,31 @@ fn patch(body: (CellKind, [usize; 3]), counter: (CellKind, [usize; 3]), stiffnes
     })
 }
 
-/// Goal: a constant pressure between blocks whose meshes match, of any kinds.
+/// Goal: a constant pressure between blocks, whether their meshes match or not. What is left is rounding: of gaps of p/k_n, which are differences of
+/// displacements of 0.1 mm, and of the solution, whose refinement stops at a residual of 1e-15.
 #[test]
-fn matching_faces_pass_the_contact_patch_test() {
+fn matching_and_unlike_faces_pass_the_contact_patch_test() {
     use CellKind::*;
-    for kind in [Hexahedron8, Hexahedron20, Hexahedron27, Tetrahedron10, Wedge15] {
-        for stiffness in [1e12, 1e14] {
-            let off = patch((kind, [3, 2, 1]), (kind, [3, 2, 2]), stiffness);
-            let bound = if matches!(kind, Tetrahedron10 | Wedge15) { 2e-9 } else { 2e-12 };
-            assert!(off.iter().all(|off| within(*off, bound, RoundOff)), "{kind:?} {stiffness:e} {off:?}");
+    let kinds = [Hexahedron8, Hexahedron20, Hexahedron27, Tetrahedron4, Tetrahedron10, Wedge6, Wedge15];
+    let matching = kinds.map(|kind| ((kind, [3, 2, 1]), (kind, [3, 2, 2])));
+    let pairs = [
+        (Hexahedron8, Hexahedron20),
+        (Hexahedron20, Tetrahedron10),
+        (Tetrahedron10, Hexahedron8),
+        (Tetrahedron4, Wedge15),
+        (Wedge15, Tetrahedron4),
+    ];
+    // Finer, coarser, and with faces of the counter-body inside of those of the body.
+    let cells = [([4, 4, 2], [3, 3, 2]), ([3, 3, 2], [4, 4, 2]), ([2, 3, 1], [7, 5, 2])];
+    let unlike = pairs.iter().flat_map(|(a, b)| cells.map(|(n, m)| ((*a, n), (*b, m))));
+    for (body, counter) in matching.into_iter().chain(unlike) {
+        for (stiffness, bound) in [(1e12, 1e-12), (1e14, 5e-12)] {
+            let off = patch(body, counter, stiffness);
+            assert!(
+                off.iter().all(|off| within(*off, bound, RoundOff)),
+                "{body:?} {counter:?} {stiffness:e} {off:?}"
+            );
         }
-    }
-}
-
-/// Goal: the same where they do not match. The quadrature does not see where the faces of the counter-body end: with a contact as stiff as
-/// 20 mm of steel would be ten times over the pressure is off by less than 1 % on the finer body.
-#[test]
-fn a_finer_body_on_a_coarser_one_has_nearly_a_constant_pressure() {
-    use CellKind::*;
-    for (a, b) in [(Hexahedron8, Hexahedron20), (Hexahedron20, Tetrahedron10), (Tetrahedron10, Hexahedron8)] {
-        let [pressure, stress] = patch((a, [4, 4, 2]), (b, [3, 3, 2]), 1e12);
-        assert!(
-            within(pressure, 5e-3, Discretisation) && within(stress, 0.1, Discretisation),
-            "{a:?} {b:?} {pressure} {stress}"
-        );
     }
 }
 
@@ -217,7 +218,7 @@ fn pressure_of_a_cylinder_and_of_a_sphere_is_that_of_hertz() {
         }
         let sphere = hertz(true, 8, kind);
         assert!(
-            within(sphere[1], 0.05, Discretisation) && within(sphere[2], 0.01, Discretisation),
+            within(sphere[1], 0.03, Discretisation) && within(sphere[2], 0.02, Discretisation),
             "{kind:?} {sphere:?}"
         );
     }
@@ -274,20 +275,25 @@ fn shaft(kinds: [CellKind; 2], [inner, outer]: [usize; 2], closed: bool) -> f64 
     })
 }
 
-/// Goal: a curved conforming pair. Meshes that match leave the error of the elements; of others the quadrature leaves 1 %, and their gaps, which are
-/// those of parabolas in place of circles, fall with the fourth power of the size of a face.
+/// Goal: a curved conforming pair, to 1e-4 whether the meshes match or not. Gaps between unlike meshes, which are those of parabolas in place of
+/// circles, fall with the fourth power of the size of a face.
 #[test]
 fn a_shaft_in_a_bore_has_the_pressure_of_lame() {
     use CellKind::*;
     let kinds = [Hexahedron20, Hexahedron20];
-    for closed in [true, false] {
-        let matching = shaft(kinds, [4, 4], closed);
-        assert!(within(matching, 6e-3, Discretisation), "{matching}");
-        let [coarse, fine] = [[4, 7], [16, 28]].map(|cells| shaft(kinds, cells, closed));
-        assert!(within(fine, 1e-2, Discretisation) && fine < 0.6 * coarse, "{closed} {coarse} {fine}");
+    for cells in [[4, 4], [4, 7], [16, 28]] {
+        let off = shaft(kinds, cells, true);
+        assert!(within(off, 1e-4, Discretisation), "{cells:?} {off}");
     }
-    let unlike = shaft([Tetrahedron10, Hexahedron27], [16, 28], true);
-    assert!(within(unlike, 3e-2, Discretisation), "{unlike}");
+    let matching = shaft(kinds, [4, 4], false);
+    assert!(within(matching, 3e-4, Discretisation), "{matching}");
+    let [coarse, fine] = [[4, 7], [16, 28]].map(|cells| shaft(kinds, cells, false));
+    let order = (coarse / fine).log2() / 2.0;
+    assert!(within(fine, 1e-3, Discretisation) && order > 3.5, "{coarse} {fine}");
+    for (kinds, bound) in [([Tetrahedron10, Hexahedron27], 2e-4), ([Hexahedron8, Hexahedron8], 5e-3)] {
+        let unlike = shaft(kinds, [16, 28], true);
+        assert!(within(unlike, bound, Discretisation), "{kinds:?} {unlike}");
+    }
 }
 
 /// A sector of 60° of a pad on a ring that turns: the pressure is constant, as the bodies are far stiffer than the contact, friction turns with the

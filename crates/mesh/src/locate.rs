@@ -126,6 +126,24 @@ impl<'a> FaceTree<'a> {
         found
     }
 
+    /// The faces that may reach into a box, ascending: those in leaves whose boxes do.
+    pub fn faces_in(&self, low: [f64; 3], high: [f64; 3]) -> Vec<usize> {
+        let mut found = Vec::new();
+        let mut left = if self.faces.is_empty() { Vec::new() } else { vec![0] };
+        while let Some(number) = left.pop() {
+            let branch = &self.branches[number];
+            if (0..3).any(|k| branch.low[k] > high[k] || branch.high[k] < low[k]) {
+                continue;
+            }
+            match branch.halves {
+                Some(halves) => left.extend(halves),
+                None => found.extend_from_slice(&self.order[branch.range.clone()]),
+            }
+        }
+        found.sort_unstable();
+        found
+    }
+
     /// The longest way between a corner of a face and its first one \[m\].
     pub fn size(&self, face: usize) -> f64 {
         let corners = self.faces[face].corners();
@@ -145,7 +163,7 @@ impl<'a> FaceTree<'a> {
     }
 
     /// The nearest point of one face: that of its flat pieces, then by Newton's method inside of it and along its edges.
-    fn nearest_on(&self, face: usize, x: [f64; 3]) -> LocatedPoint {
+    pub fn nearest_on(&self, face: usize, x: [f64; 3]) -> LocatedPoint {
         let cell = &self.faces[face];
         let kind = cell.kind();
         let places = kind.reference_coordinates();

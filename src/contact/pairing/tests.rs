@@ -352,7 +352,8 @@ fn a_shaft_in_a_bore_has_a_frame_at_every_point() {
         assert!(points.len() == rubbing.len() * if inner == CellKind::Tetrahedron10 { 3 } else { 4 });
         let area: f64 = points.iter().map(|p| p.weight).sum();
         let exact = std::f64::consts::FRAC_PI_2 * (radius - clearance) * 0.03;
-        let (of_area, of_gap, of_normal) = if flat { (5e-3, 3e-4, 0.2) } else { (2e-5, 3e-6, 1e-2) };
+        let (of_area, of_gap, of_normal, of_motion) =
+            if flat { (5e-3, 3e-4, 0.2, 1e-4) } else { (2e-5, 3e-6, 1e-2, 2e-6) };
         assert!(within((area / exact - 1.0).abs(), of_area, Discretisation), "{area} {exact}");
         let (t, r) = ([3e-4, -2e-4, 5e-4], [0.02, -0.03, 0.04]);
         for p in &points {
@@ -368,60 +369,122 @@ fn a_shaft_in_a_bore_has_a_frame_at_every_point() {
                 within(dot(add(normal, out), add(normal, out)).sqrt(), of_normal, Discretisation),
                 "{normal:?}"
             );
-            assert!(within((dot(normal, normal) - 1.0).abs(), 1e-13, RoundOff));
+            // Means over a part of a face, of which those of linear functions are their values at the point.
             let foot = subtract(p.position, scale(p.gap, normal));
             for (sign, of, x) in [(1.0, &of_shaft, p.position), (-1.0, &of_bore, foot)] {
                 let u = moved(t, r, of);
                 let there = scale(sign, add(t, cross(r, x)));
-                assert!(within((p.normal.dot(&u) + dot(there, normal)).abs(), 1e-14, RoundOff));
-                assert!(within((p.tangents[0].dot(&u) - there[2]).abs(), 1e-14, RoundOff));
-                let t2 = cross(normal, [0.0, 0.0, 1.0]);
-                assert!(within((p.tangents[1].dot(&u) - dot(there, t2)).abs(), 1e-14, RoundOff));
+                let off = (p.normal.dot(&u) + dot(there, normal)).abs();
+                assert!(within(off, of_motion, Discretisation), "{off}");
+                assert!(within((p.tangents[0].dot(&u) - there[2]).abs(), of_motion, Discretisation));
             }
+            // Forces on both bodies have no moment together.
+            let both = p.normal.dot(&moved(t, r, &of_shaft)) + p.normal.dot(&moved(t, r, &of_bore));
+            assert!(within(both.abs(), 1e-9, Discretisation), "{both}");
         }
     }
 }
 
-/// A pad that is wider than the face under it: points beside the face are left out, and so are faces of the pad that look elsewhere.
+/// A box of 20-node hexahedra with a corner at `at`, turned by `angle` about z there: the part and its faces that look along z (1) or against it (−1).
+fn brick(
+    nodes: &mut Vec<Vector>,
+    (lengths, cells): (Vector, [usize; 3]),
+    (at, angle): (Vector, f64),
+    looks: f64,
+) -> (Part, Vec<Cell>, Vec<Cell>) {
+    let mesh = structured_box(CellKind::Hexahedron20, lengths, cells).unwrap();
+    let first = nodes.len();
+    let (sin, cos) = f64::sin_cos(angle);
+    nodes.extend(mesh.nodes.iter().map(|[x, y, z]| add([cos * x - sin * y, sin * x + cos * y, *z], at)));
+    let own = mesh.elements.iter().filter(|cell| cell.dimension() == 3);
+    let own: Vec<Cell> = own.map(|cell| cell.renumbered(|node| first + node)).collect();
+    let skin = outer_faces(own.iter());
+    let side = if looks > 0.0 { lengths[2] } else { 0.0 };
+    let on_side =
+        |face: &&Cell| face.nodes().iter().all(|node| (mesh.nodes[node - first][2] - side).abs() < 1e-12);
+    let looking = skin.iter().filter(on_side).cloned().collect();
+    (Part::new("brick", own, Solid { material: steel(), integration: Integration::Full }), looking, skin)
+}
+
+/// A pad that is wider than the face under it: what is beside it is left out, and so are faces of the pad that look elsewhere. The pad ends over a
+/// line of its own faces, or 5 mm beyond it.
 #[test]
-fn points_beside_the_face_and_faces_that_look_away_are_left_out() {
+fn parts_beside_the_face_and_faces_that_look_away_are_left_out() {
+    for (from, count) in [(0.02, 4 * 4), (0.015, 4 * 4 + 2 * 3)] {
+        let mut nodes = Vec::new();
+        let (disc, upper, _) = brick(&mut nodes, ([0.04, 0.04, 0.01], [2, 2, 1]), ([0.0; 3], 0.0), 1.0);
+        let (mut pad, away, skin) =
+            brick(&mut nodes, ([0.04, 0.02, 1e-4], [4, 2, 1]), ([from, 0.01, 0.01], 0.0), 1.0);
+        pad.name = "pad".into();
+        // With every face of a pad thinner than the reach.
+        let along = Sliding::Along([1.0, 0.0, 0.0]);
+        let mut s = Surfaces::new("face", &nodes, [&pad, &disc], ContactSide::Face(&skin), along);
+        s.faces = &upper;
+        let points = pair_surfaces(&s, &reduce).unwrap();
+        assert_eq!(points.len(), count);
+        let [area, middle] =
+            [0, 1].map(|power| points.iter().map(|p| p.weight * p.position[0].powi(power)).sum::<f64>());
+        let right = (0.04 - from) * 0.02;
+        assert!(within((area - right).abs(), 1e-16, RoundOff), "{area}");
+        assert!(within((middle - right * 0.5 * (0.04 + from)).abs(), 1e-17, RoundOff), "{middle}");
+        assert!(points.iter().all(|p| within(p.gap.abs(), 1e-16, RoundOff) && p.position[0] < 0.04));
+        s.side = ContactSide::Face(&away);
+        let text = pair_surfaces(&s, &reduce).unwrap_err().to_string();
+        assert!(text.contains("faces of `pad` that look away from `brick`"), "{text}");
+    }
+}
+
+/// One face of the body over a smaller counter-body of several: three points have its area and its moments up to the second, and rigid motions
+/// of the counter-body are felt as they are.
+#[test]
+fn a_small_counter_body_under_one_face_is_held_by_three_points() {
     let mut nodes = Vec::new();
-    let mut solid = |name: &str, lengths: [f64; 3], at: Vector, cells: [usize; 3]| {
-        let mesh = structured_box(CellKind::Hexahedron20, lengths, cells).unwrap();
-        let first = nodes.len();
-        nodes.extend(mesh.nodes.iter().map(|x| add(*x, at)));
-        let own: Vec<Cell> = mesh.elements.iter().filter(|cell| cell.dimension() == 3).cloned().collect();
-        let own: Vec<Cell> = own.iter().map(|cell| cell.renumbered(|node| first + node)).collect();
-        let faces = outer_faces(own.iter());
-        (Part::new(name, own, Solid { material: steel(), integration: Integration::Full }), faces)
-    };
-    let (disc, all) = solid("disc", [0.04, 0.04, 0.01], [0.0; 3], [2, 2, 1]);
-    let (pad, skin) = solid("pad", [0.04, 0.02, 1e-4], [0.02, 0.01, 0.01], [4, 2, 1]);
-    let upper: Vec<Cell> = all
-        .into_iter()
-        .filter(|face| face.nodes().iter().all(|node| (nodes[*node][2] - 0.01).abs() < 1e-12))
-        .collect();
-    // With every face of a pad thinner than the reach.
-    let mut s = Surfaces::new(
-        "face",
-        &nodes,
-        [&pad, &disc],
-        ContactSide::Face(&skin),
-        Sliding::Along([1.0, 0.0, 0.0]),
-    );
+    let (lengths, place) = ([0.012, 0.006, 0.004], ([0.011, 0.008, 0.0], 0.4));
+    let (pin, upper, _) = brick(&mut nodes, (lengths, [3, 2, 1]), place, 1.0);
+    let of_pin = 0..nodes.len();
+    let (pad, lower, _) = brick(&mut nodes, ([0.04, 0.04, 0.01], [1; 3]), ([0.0, 0.0, 0.004], 0.0), -1.0);
+    let along = Sliding::Along([1.0, 0.0, 0.0]);
+    let mut s = Surfaces::new("face", &nodes, [&pad, &pin], ContactSide::Face(&lower), along);
     s.faces = &upper;
     let points = pair_surfaces(&s, &reduce).unwrap();
-    // Half of its lower face is over the disc.
-    assert_eq!(points.len(), 4 * 4);
-    let area: f64 = points.iter().map(|p| p.weight).sum();
-    assert!(within((area - 0.02 * 0.02).abs(), 1e-17, RoundOff), "{area}");
-    assert!(points.iter().all(|p| within(p.gap.abs(), 1e-16, RoundOff) && p.position[0] < 0.04));
-    let away: Vec<Cell> = skin
-        .iter()
-        .filter(|face| face.nodes().iter().all(|node| nodes[*node][2] > 0.01 + 5e-5))
-        .cloned()
-        .collect();
-    s.side = ContactSide::Face(&away);
-    let text = pair_surfaces(&s, &reduce).unwrap_err().to_string();
-    assert!(text.contains("faces of `pad` that look away from `disc`"), "{text}");
+    assert_eq!(points.len(), 3);
+    let area = lengths[0] * lengths[1];
+    let ((sin, cos), [a, b, _]) = (place.1.sin_cos(), lengths);
+    let middle = add(place.0, [0.5 * (cos * a - sin * b), 0.5 * (sin * a + cos * b), 0.0]);
+    let sum = |of: &dyn Fn(Vector) -> f64| {
+        points.iter().map(|p| p.weight * of(subtract(p.position, middle))).sum::<f64>() / area
+    };
+    assert!(within((sum(&|_| 1.0) - 1.0).abs(), 1e-13, RoundOff));
+    assert!(within((sum(&|x| x[0]).abs() + sum(&|x| x[1]).abs()) / a, 1e-13, RoundOff));
+    // ∫ x² = a²/12 along the edges of the pin.
+    let (long, wide) = ([cos, sin, 0.0], [-sin, cos, 0.0]);
+    assert!(within((sum(&|x| dot(x, long).powi(2)) / (a * a / 12.0) - 1.0).abs(), 1e-12, RoundOff));
+    assert!(within((sum(&|x| dot(x, wide).powi(2)) / (b * b / 12.0) - 1.0).abs(), 1e-12, RoundOff));
+    assert!(within(sum(&|x| dot(x, long) * dot(x, wide)).abs() / (a * b), 1e-13, RoundOff));
+    let (t, r) = ([3e-4, -2e-4, 5e-4], [0.02, -0.03, 0.04]);
+    let u = rigid(&nodes, of_pin, t, r);
+    for p in &points {
+        let there = add(t, cross(r, p.position));
+        assert!(within((p.normal.dot(&u) - there[2]).abs(), 1e-15, RoundOff));
+        assert!(within((p.tangents[0].dot(&u) + there[0]).abs(), 1e-15, RoundOff));
+        assert!(within((p.tangents[1].dot(&u) + there[1]).abs(), 1e-15, RoundOff));
+    }
+}
+
+/// Of counter-faces that lie over each other within reach, the nearest is touched, once.
+#[test]
+fn of_counter_faces_over_each_other_the_nearest_is_touched() {
+    let mut nodes = Vec::new();
+    let box_of = ([0.04, 0.04, 1e-4], [2, 2, 1]);
+    let (_, mut upper, _) = brick(&mut nodes, box_of, ([0.0, 0.0, -5e-4], 0.0), 1.0);
+    let (disc, above, _) = brick(&mut nodes, box_of, ([0.0, 0.0, 0.0], 0.0), 1.0);
+    upper.extend(above);
+    let (pad, lower, _) =
+        brick(&mut nodes, ([0.02, 0.02, 0.01], [3, 3, 1]), ([0.01, 0.01, 1e-4 + 1e-5], 0.0), -1.0);
+    let along = Sliding::Along([1.0, 0.0, 0.0]);
+    let mut s = Surfaces::new("face", &nodes, [&pad, &disc], ContactSide::Face(&lower), along);
+    s.faces = &upper;
+    let points = pair_surfaces(&s, &reduce).unwrap();
+    assert_eq!(points.len(), 9 * 4);
+    assert!(points.iter().all(|p| within((p.gap - 1e-5).abs(), 1e-15, RoundOff)));
 }
