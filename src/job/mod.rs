@@ -36,9 +36,9 @@ mod model;
 mod modes;
 mod motion;
 mod operating_point;
-#[cfg(feature = "cli")]
 mod part_modes;
 mod part_shares;
+#[cfg(feature = "cli")]
 mod parts;
 mod place;
 mod plausible;
