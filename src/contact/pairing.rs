@@ -29,7 +29,7 @@ pub type Reduce<'a> = dyn Fn(&[(usize, usize, f64)]) -> SparseVector + 'a;
 /// * gap = distance along n, positive when open. It is exact at the nodes of a circular rim; between the nodes a
 ///   coarse mesh cuts the circle by a chord, which the points do not see.
 ///
-/// Those of a face of a solid are means of these over a part of the face ([`super::segments`]).
+/// Those of a face of a solid are means of these over a part of the face.
 ///
 /// # Errors
 /// Contact nodes that are not on the body, a counter-body out of reach (with the distance), beside it, through it, or
