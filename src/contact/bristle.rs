@@ -90,9 +90,7 @@ impl Bristle {
         }
         answer
     }
-}
 
-impl Bristle {
     /// At rest: **F** = k_t Δ up to μ(0) N, and that along Δ beyond, for a load that has grown from nothing in one proportion (the deformation
     /// theory of plasticity).
     pub(super) fn hold(

@@ -11,7 +11,7 @@
 
 use super::SteadySliding;
 use super::condensed::closed_factor;
-use super::linear::{add_reaction, directions, elastic_force};
+use super::linear::{add_reaction, directions, elastic_force, springs};
 use super::load_steps::Newton;
 use super::point_laws::{
     Fraction, Law, PointLaws, State, are_finite, force_change, largest_force, norm, slid,
@@ -77,16 +77,15 @@ impl<'a> Assembled<'a> {
         laws: &[Law],
     ) -> Option<Arc<Preconditioner>> {
         let own = laws.iter().zip(&self.springs);
-        let springs: Vec<f64> = own.map(|((_, t), closed)| t.by_penetration[0].max(OPEN * closed)).collect();
-        let normals = springs.iter().zip(&contact.points).map(|(d, (.., point))| (*d, &point.normal));
+        let closed: Vec<f64> = own.map(|((_, t), closed)| t.by_penetration[0].max(OPEN * closed)).collect();
+        let normals = closed.iter().zip(&contact.points).map(|(d, (.., point))| (*d, &point.normal));
         let tangents = laws.iter().zip(&contact.points).flat_map(|((_, tangent), (.., point))| {
-            let [_, along, across] = tangent.springs();
-            [(along, &point.tangents[0]), (across, &point.tangents[1])]
+            let [_, along, across] = springs(point, tangent);
+            [along, across]
         });
-        let closed = normals.chain(tangents.filter(|(d, _)| *d > 0.0));
-        let closed = add_scaled(&[(1.0, k), (1.0, &sum_of_squares(k.nrows(), closed))]);
-        let factor = self.engine.factorize(&closed).ok()?;
-        Some(Arc::new(Preconditioner::new(factor, contact, &springs)))
+        let sum = sum_of_squares(k.nrows(), normals.chain(tangents.filter(|(d, _)| *d > 0.0)));
+        let factor = self.engine.factorize(&add_scaled(&[(1.0, k), (1.0, &sum)])).ok()?;
+        Some(Arc::new(Preconditioner::new(factor, contact, &closed)))
     }
 }
 

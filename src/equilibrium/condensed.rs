@@ -1,6 +1,6 @@
 //! Equilibrium condensed to the contact: the static compliance seen from the contact points.
 
-use super::linear::directions;
+use super::linear::{Spring, directions};
 use super::point_laws::respond;
 use crate::error::{Error, Result};
 use crate::linalg::SymmetricFactor;
@@ -92,9 +92,6 @@ pub(crate) fn closed_stiffness<'a>(system: &'a System, k: &SparseMatrix) -> (Spa
     let sum = sum_of_squares(system.n_dofs(), springs.iter().copied());
     (add_scaled(&[(1.0, k), (1.0, &sum)]), springs)
 }
-
-/// A stiffness d \[N/m\] along a direction.
-pub type Spring<'a> = (f64, &'a SparseVector);
 
 /// The springs of the contact points where they are closed, on a structure with stiffness K: one along each normal, in the order of the
 /// points, then those along the tangents of points that stick.

@@ -1,5 +1,6 @@
 //! The contact's forces in any state of motion, and their linearisation at steady sliding.
 
+use super::point_laws::{respond, slid};
 use super::{PointState, SteadySliding};
 use crate::error::Result;
 use crate::linalg::sparse::{add_scaled, multiply_vector, sum_of_squares};
@@ -57,6 +58,16 @@ pub fn directions(point: &ContactPoint) -> [&SparseVector; 3] {
     [&point.normal, &point.tangents[0], &point.tangents[1]]
 }
 
+/// A stiffness d \[N/m\] along a direction.
+pub type Spring<'a> = (f64, &'a SparseVector);
+
+/// The springs of a point along g, t₁ and t₂.
+pub(super) fn springs<'a>(point: &'a ContactPoint, tangent: &ContactTangent) -> [Spring<'a>; 3] {
+    let [normal, along, across] = tangent.springs();
+    let [g, t1, t2] = directions(point);
+    [(normal, g), (along, t1), (across, t2)]
+}
+
 /// Adds g N − t₁ F₁ − t₂ F₂ of a point to a force.
 pub(super) fn add_reaction(point: &ContactPoint, forces: &ContactForces, total: &mut [f64]) {
     let [g, t1, t2] = directions(point);
@@ -112,12 +123,10 @@ pub fn tangent_stiffness<'a>(system: &'a System, displacement: &[f64]) -> Result
 /// springs of the contact are added to a copy of K.
 pub fn closed_structure(system: &System, steady: &SteadySliding) -> Result<Structure> {
     let stiffness = tangent_stiffness(system, &steady.displacement)?;
-    let springs = system.points().zip(&steady.points).flat_map(|((_, point), state)| {
-        let own = state.tangent.springs();
-        [0, 1, 2].map(|c| (own[c], directions(point)[c]))
-    });
-    let springs = sum_of_squares(system.n_dofs(), springs.filter(|(k, _)| *k != 0.0));
-    let stiffness = add_scaled(&[(1.0, stiffness.as_ref()), (1.0, &springs)]);
+    let points = system.points().zip(&steady.points);
+    let closed = points.flat_map(|((_, point), state)| springs(point, &state.tangent));
+    let sum = sum_of_squares(system.n_dofs(), closed.filter(|(k, _)| *k != 0.0));
+    let stiffness = add_scaled(&[(1.0, stiffness.as_ref()), (1.0, &sum)]);
     Ok(Structure { stiffness: stiffness.into(), ..system.structure.clone() })
 }
 
@@ -127,14 +136,14 @@ pub fn contact_force(system: &System, approach: &[f64], displacement: &[f64], ve
     for (pair, approach) in system.pairs.iter().zip(approach) {
         for point in &*pair.points {
             let [g, t1, t2] = directions(point);
+            let penetration = approach - point.gap + g.dot(displacement);
             if pair.sticks() {
-                let slid = [t1, t2].map(|t| -t.dot(displacement));
-                let penetration = approach - point.gap + g.dot(displacement);
-                add_reaction(point, &pair.law.hold(penetration, slid, point.weight).0, &mut total);
+                let (forces, _) = respond(pair, point, penetration, slid(pair, point, displacement));
+                add_reaction(point, &forces, &mut total);
                 continue;
             }
             let motion = ContactMotion {
-                penetration: approach - point.gap + g.dot(displacement),
+                penetration,
                 penetration_rate: g.dot(velocity),
                 slip_velocity: [pair.velocity_at(point) - t1.dot(velocity), -t2.dot(velocity)],
             };

@@ -19,12 +19,12 @@ mod steady;
 #[cfg(test)]
 mod tests;
 
+pub use condensed::closed_springs;
 #[cfg(test)]
 pub(crate) use condensed::closed_stiffness;
-pub use condensed::{Spring, closed_springs};
 pub use linear::{
-    ContactBlock, LinearContact, closed_structure, contact_force, directions, linearize, linearize_points,
-    tangent_stiffness,
+    ContactBlock, LinearContact, Spring, closed_structure, contact_force, directions, linearize,
+    linearize_points, tangent_stiffness,
 };
 pub use nearby::Nearby;
 pub use solver::SteadySolver;

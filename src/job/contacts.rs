@@ -108,7 +108,7 @@ fn closing(contact: &Contact) -> Closing {
     }
 }
 
-/// Whether the points of a pair are the integration points of faces of a solid.
+/// Whether a pair touches with faces of a solid.
 fn touches_with_faces(contact: &Contact, regions: &Regions, model: &Model) -> bool {
     let nodes = regions.nodes(&contact.body, "").unwrap_or_default();
     let on_a_solid = model.part_with(&nodes).is_some_and(|part| part.as_shell().is_none());

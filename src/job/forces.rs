@@ -5,6 +5,7 @@ use crate::case::{Case, Force, ForceChoice};
 use crate::error::{Error, Fault, Faults, Result};
 use crate::linalg::SparseVector;
 use crate::structure::{Assembled, Model};
+use nalgebra::Vector3;
 
 /// Quadrature of a pressure on faces, exact on flat ones of second order.
 const DEGREE: usize = 4;
@@ -71,8 +72,7 @@ fn pressed(
     for face in &faces {
         for point in face.kind().quadrature(DEGREE) {
             let [a, b, _] = face.tangents(&model.nodes, point.at);
-            let area = [0, 1, 2].map(|k| a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3]);
-            let force = area.map(|n| -pressure * point.weight * n);
+            let force = -pressure * point.weight * Vector3::from(a).cross(&Vector3::from(b));
             for (node, component, moved) in part.displacement_at(&model.nodes, face, point.at) {
                 entries.push((node, component, (0..3).map(|k| moved[k] * force[k]).sum()));
             }

@@ -132,13 +132,13 @@ impl Reaction {
                     point.law.advance(&motion, &since, point.weight)
                 }
                 None => {
-                    let (forces, tangent) = if model.sticks(point.pair) {
+                    let sticks = model.sticks(point.pair);
+                    let (forces, tangent) = if sticks {
                         point.law.hold(motion.penetration, [-q[at + 1], -q[at + 2]], point.weight)
                     } else {
                         point.law.respond(&motion, point.weight)
                     };
                     let bristle = point.law.bent(forces.friction, point.weight);
-                    let sticks = model.sticks(point.pair);
                     SlipAnswer { forces, tangent, bristle, sticks, ..SlipAnswer::default() }
                 }
             };
