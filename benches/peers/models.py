@@ -8,6 +8,9 @@ into moments about the radius, which makes K and C unsymmetric in 600 rows. Rayl
 
 `solid`: a steel ring (75 to 150 mm, 25 mm thick) clamped at its bore, of 10-node tetrahedra of one size: bricks cut into six.
 
+`brake`: that ring of another size with a pad that slides on 60° of its face, of DOFS and POINTS (`brake-1000`: about 1,000 contact
+points); K and C have the contact at steady sliding, friction μ = 0.5, and are not symmetric. case.toml has the contact as such.
+
 `step`: one such disc with Rayleigh damping, pressed at ten nodes on a counter-body that slides past. The stiffness and friction of
 the contact stay out of the matrices: case.toml has them.
 
@@ -54,6 +57,40 @@ material = "steel"
 [support.bore]
 on = "bore"
 """
+BRAKE = """title = "A pad on a ring"
+[mesh]
+file = "brake.msh"
+unit = "m"
+[material.iron]
+youngs_modulus = "120 GPa"
+poissons_ratio = 0.26
+density = "7200 kg/m^3"
+rayleigh = { alpha = "10 1/s", beta = "1e-8 s" }
+[material.lining]
+youngs_modulus = "8 GPa"
+poissons_ratio = 0.25
+density = "2500 kg/m^3"
+rayleigh = { alpha = "10 1/s", beta = "1e-8 s" }
+[solid.disc]
+material = "iron"
+[solid.pad]
+material = "lining"
+[support.bore]
+on = "bore"
+[support.back]
+on = "pad_back"
+held = ["ux", "uy"]
+[contact.pad]
+body = "pad_face"
+counter = "disc_face"
+approach = 0
+rotation = { axis = [0, 0, 1], speed = "300 rpm" }
+normal = { per = "area", stiffness = "100 GN/m^3" }
+friction = { law = "coulomb", mu0 = 0.5 }
+[force.piston]
+on = "pad_back"
+pressure = "1 MPa"
+"""
 STEP = """title = "A disc in sliding contact at ten points"
 [matrices]
 mass = "m.mtx"
@@ -90,51 +127,100 @@ def disc(stridor, folder, dofs, thickness):
     return m, k, places
 
 
-def ring_mesh(path, dofs):
-    """Nodes are the points of a grid of half the bricks' size: corners, and the middles of all edges of the six tetrahedra of a brick,
-    which have one diagonal in common."""
+class Grid:
+    """A block of rings or sectors of 10-node tetrahedra: bricks cut into six that have one diagonal in common. Nodes are the points of
+    a grid of half the bricks' size: corners, and the middles of all edges. A whole turn closes on itself."""
+
+    def __init__(self, radii, angles, heights, bricks):
+        self.bricks = bricks
+        closed = np.isclose(angles[1] - angles[0], 2 * np.pi)
+        self.points = [2 * n + 1 for n in bricks]
+        self.points[1] -= closed
+        steps = np.meshgrid(*(np.arange(n) for n in self.points), indexing="ij")
+        radius, angle, height = (low + (high - low) * step / (2 * n)
+                                 for (low, high), step, n in zip((radii, angles, heights), steps, bricks))
+        self.nodes = np.stack([radius * np.cos(angle), radius * np.sin(angle), height], -1).reshape(-1, 3)
+        self.corners = 2 * np.stack(np.meshgrid(*(np.arange(n) for n in bricks), indexing="ij"), -1).reshape(-1, 3)
+
+    def number(self, at):
+        return (at[..., 0] * self.points[1] + at[..., 1] % self.points[1]) * self.points[2] + at[..., 2]
+
+    def cells(self):
+        cells = []
+        for first, second in ((0, 1), (1, 2), (2, 0), (0, 2), (2, 1), (1, 0)):
+            steps = np.zeros((4, 3), int)
+            steps[1:, first], steps[2:, second], steps[3] = 2, 2, 2
+            if np.linalg.det(steps[1:] - steps[0]) < 0:
+                steps[[1, 2]] = steps[[2, 1]]
+            # The order of Gmsh.
+            edges = [(0, 1), (1, 2), (2, 0), (3, 0), (2, 3), (1, 3)]
+            cells.append(self.number(self.corners[:, None] + with_middles(steps, edges)))
+        return np.concatenate(cells)
+
+    def faces(self, axis, high):
+        """The sides of bricks at one end of an axis, in two triangles along the diagonal that the tetrahedra have."""
+        at = 2 * (self.bricks[axis] - 1) if high else 0
+        walls, faces = self.corners[self.corners[:, axis] == at], []
+        for first in (axis + 1) % 3, (axis + 2) % 3:
+            steps = np.zeros((3, 3), int)
+            steps[:, axis] = 2 * high
+            steps[1:, first], steps[2] = 2, [2 * high if k == axis else 2 for k in range(3)]
+            faces.append(self.number(walls[:, None] + with_middles(steps, [(0, 1), (1, 2), (2, 0)])))
+        return np.concatenate(faces)
+
+
+def with_middles(steps, edges):
+    return np.concatenate([steps, [(steps[a] + steps[b]) // 2 for a, b in edges]])
+
+
+def write_mesh(path, nodes, groups):
+    """`groups` are pairs of a name and cells, of 10 nodes (bodies) or 6 (faces)."""
+    kinds = {10: (3, 11), 6: (2, 9)}
+    with open(path, "w") as file:
+        file.write(f"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n{len(groups)}\n")
+        for tag, (name, cells) in enumerate(groups, 1):
+            file.write(f'{kinds[cells.shape[1]][0]} {tag} "{name}"\n')
+        file.write(f"$EndPhysicalNames\n$Nodes\n{len(nodes)}\n")
+        np.savetxt(file, np.c_[np.arange(1, len(nodes) + 1), nodes], fmt="%d %.17g %.17g %.17g")
+        file.write(f"$EndNodes\n$Elements\n{sum(len(cells) for _, cells in groups)}\n")
+        first = 1
+        for tag, (_, cells) in enumerate(groups, 1):
+            head = np.tile([kinds[cells.shape[1]][1], 2, tag, tag], (len(cells), 1))
+            np.savetxt(file, np.c_[np.arange(first, first + len(cells)), head, 1 + cells], fmt="%d")
+            first += len(cells)
+        file.write("$EndElements\n")
+
+
+def ring(dofs):
     inner, outer, thickness = 0.075, 0.15, 0.025
     radial = max(2, round((dofs / 75) ** (1 / 3)))
     through = max(1, round(radial * thickness / (outer - inner)))
     around = max(8, round(np.pi * (outer + inner) * radial / (outer - inner)))
-    i, j, k = np.meshgrid(np.arange(2 * radial + 1), np.arange(2 * around), np.arange(2 * through + 1), indexing="ij")
-    number = lambda at: 1 + (at[..., 0] * 2 * around + at[..., 1] % (2 * around)) * (2 * through + 1) + at[..., 2]
-    radius, angle = inner + (outer - inner) * i / (2 * radial), np.pi * j / around
-    nodes = np.stack([radius * np.cos(angle), radius * np.sin(angle), thickness * k / (2 * through)], -1).reshape(-1, 3)
-    bricks = 2 * np.stack(np.meshgrid(*(np.arange(n) for n in (radial, around, through)), indexing="ij"), -1).reshape(-1, 3)
-    cells = []
-    for first, second in ((0, 1), (1, 2), (2, 0), (0, 2), (2, 1), (1, 0)):
-        steps = np.zeros((4, 3), int)
-        steps[1:, first], steps[2:, second], steps[3] = 2, 2, 2
-        if np.linalg.det(steps[1:] - steps[0]) < 0:
-            steps[[1, 2]] = steps[[2, 1]]
-        # The order of Gmsh.
-        edges = [(0, 1), (1, 2), (2, 0), (3, 0), (2, 3), (1, 3)]
-        places = np.concatenate([steps, [(steps[a] + steps[b]) // 2 for a, b in edges]])
-        cells.append(number(bricks[:, None] + places))
-    cells = np.concatenate(cells)
-    # On the bore: the sides of bricks in two triangles, along the diagonal that the tetrahedra have.
-    walls, faces = bricks[bricks[:, 0] == 0], []
-    for corners in ([[0, 0, 0], [0, 2, 0], [0, 2, 2]], [[0, 0, 0], [0, 0, 2], [0, 2, 2]]):
-        corners = np.array(corners)
-        places = np.concatenate([corners, [(corners[a] + corners[b]) // 2 for a, b in ((0, 1), (1, 2), (2, 0))]])
-        faces.append(number(walls[:, None] + places))
-    faces = np.concatenate(faces)
-    with open(path, "w") as file:
-        file.write('$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n3 1 "ring"\n2 2 "bore"\n$EndPhysicalNames\n')
-        file.write(f"$Nodes\n{len(nodes)}\n")
-        np.savetxt(file, np.c_[np.arange(1, len(nodes) + 1), nodes], fmt="%d %.17g %.17g %.17g")
-        file.write(f"$EndNodes\n$Elements\n{len(cells) + len(faces)}\n")
-        for first, kind, of, tag in ((1, 11, cells, 1), (1 + len(cells), 9, faces, 2)):
-            head = np.tile([kind, 2, tag, tag], (len(of), 1))
-            np.savetxt(file, np.c_[np.arange(first, first + len(of)), head, of], fmt="%d")
-        file.write("$EndElements\n")
+    return Grid((inner, outer), (0, 2 * np.pi), (0, thickness), (radial, around, through))
+
+
+def brake(stridor, folder, dofs, points):
+    """M, C and K of small motions of a ring on which a pad of about so many contact points slides; the case beside them has the contact
+    as such."""
+    folder.mkdir(parents=True, exist_ok=True)
+    disc = ring(dofs)
+    # Three points a triangle, sides of one length.
+    radial = max(2, round((points / 12) ** 0.5))
+    pad = Grid((0.085, 0.145), np.radians([60, 120]), (0.025, 0.037), (radial, 2 * radial, max(2, radial // 5)))
+    own = len(disc.nodes)
+    write_mesh(folder / "brake.msh", np.concatenate([disc.nodes, pad.nodes]), [
+        ("disc", disc.cells()), ("bore", disc.faces(0, False)), ("disc_face", disc.faces(2, True)),
+        ("pad", own + pad.cells()), ("pad_face", own + pad.faces(2, False)), ("pad_back", own + pad.faces(2, True))])
+    (folder / "case.toml").write_text(BRAKE)
+    subprocess.run([stridor, "export", folder / "case.toml", "--linearised", "--out", folder / "matrices", "--quiet"], check=True)
+    return [sp.csr_matrix(scipy.io.mmread(folder / "matrices" / f"{name}.mtx")) for name in ("mass", "damping", "stiffness")]
 
 
 def solid(stridor, folder, dofs):
     """M and K of a ring of solids; every node has ux, uy, uz."""
     folder.mkdir(parents=True, exist_ok=True)
-    ring_mesh(folder / "ring.msh", dofs)
+    grid = ring(dofs)
+    write_mesh(folder / "ring.msh", grid.nodes, [("ring", grid.cells()), ("bore", grid.faces(0, False))])
     (folder / "case.toml").write_text(SOLID)
     subprocess.run([stridor, "export", folder / "case.toml", "--out", folder / "matrices", "--quiet"], check=True)
     return [sp.csr_matrix(scipy.io.mmread(folder / "matrices" / f"{name}.mtx")) for name in ("mass", "stiffness")]
@@ -186,6 +272,8 @@ def main(stridor, folder, kind, dofs):
         if kind == "step":
             matrices["c"] = ALPHA * m + BETA * k
             (folder / "case.toml").write_text(pressed(places))
+    elif kind.startswith("brake"):
+        matrices = dict(zip("mck", brake(stridor, folder / "parts", dofs, float(kind.partition("-")[2]))))
     elif kind == "solid":
         matrices = dict(zip("mk", solid(stridor, folder / "parts", dofs)))
     else:

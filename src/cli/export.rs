@@ -3,7 +3,7 @@
 use super::output::{Common, SUCCESS, say};
 use crate::case::read_case;
 use crate::error::Result;
-use crate::job::export;
+use crate::job::{ContactAs, export};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -14,10 +14,14 @@ pub struct ExportOptions {
     /// The folder for mass.mtx, stiffness.mtx, damping.mtx, dofs.csv, contact points and a case that takes them
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
+    /// The contacts as terms of C and K, linearised at steady sliding: the matrices of small motions
+    #[arg(long)]
+    linearised: bool,
 }
 
 pub fn run(options: &ExportOptions, common: &Common) -> Result<u8> {
-    let left_out = export(&read_case(&options.case)?, &options.out)?;
+    let contact = if options.linearised { ContactAs::Matrices } else { ContactAs::Points };
+    let left_out = export(&read_case(&options.case)?, contact, &options.out)?;
     if !common.quiet {
         for sentence in left_out {
             say(format!("warning: {sentence}."))?;

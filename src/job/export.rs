@@ -2,35 +2,49 @@
 
 use super::imported::direction_text;
 use super::prepared::Prepared;
+use super::pressed;
 use crate::case::{
-    CalibrateAnalysis, Case, ContactPoints, Matrices, SQUEAL, Slide, TransientAnalysis, path_matches,
+    CalibrateAnalysis, Case, ContactPoints, ContactState, Matrices, SQUEAL, Slide, TransientAnalysis,
+    path_matches,
 };
+use crate::equilibrium::{linearize, solve_steady, tangent_stiffness};
 use crate::error::Result;
 use crate::error::read::read_bytes;
 use crate::linalg::SparseMatrix;
 use crate::linalg::matrix_market::to_text;
 use crate::linalg::sparse::{add_scaled, entry};
 use crate::results::{FileNames, FolderLock, write_atomically};
-use crate::system::{ConstantMatrices, ContactPair};
+use crate::system::{ConstantMatrices, ContactPair, Structure, System};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::Path;
+
+/// How an exported case has its contacts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ContactAs {
+    /// `contact_NAME.csv`, with the laws in the case: M, C and K are those of the structure.
+    Points,
+    /// Terms of C and K, linearised at steady sliding: M, C and K are those of small motions about it.
+    Matrices,
+}
 
 /// Writes `mass.mtx`, `stiffness.mtx`, `damping.mtx` and `load.mtx` (when there are any), `dofs.csv`, `contact_NAME.csv` of each pair
 /// and `case.toml` into the folder `out`, with the files of what was measured as `measured_NAME`. That case gives the same
 /// eigenvalues as the one it came from.
 ///
 /// Loss factors are the imaginary part of the stiffness. Modal damping stays a key of the case. What depends on the
-/// state (the stiffness of the preload) and what asks for a part, a region or a scalar that matrices do not have is left out;
+/// state (the stiffness of the preload, but in the matrices of small motions) and what asks for a part, a region or a scalar that matrices do not have is left out;
 /// the returned sentences say so.
 ///
 /// # Errors
-/// Faults of the case, or a folder that cannot be written.
-pub fn export(case: &Case, out: &Path) -> Result<Vec<String>> {
+/// Faults of the case, no steady sliding where it is asked for, or a folder that cannot be written.
+pub fn export(case: &Case, contact: ContactAs, out: &Path) -> Result<Vec<String>> {
     let prepared = Prepared::new(case)?;
     let _lock = FolderLock::take(out)?;
     let system = &prepared.system;
-    let ConstantMatrices { mass, damping, stiffness, loss } = system.constant_matrices()?;
+    let linearised = contact == ContactAs::Matrices;
+    let ConstantMatrices { mass, damping, stiffness, loss } =
+        if linearised { small_motions(&prepared)? } else { system.constant_matrices()? };
     let write = |name: &str, text: String| write_atomically(out, name, text.as_bytes());
     let title = &case.title;
     write("mass.mtx", to_text(&mass, None, &format!("{title}: mass [kg, kg m2]")))?;
@@ -46,13 +60,13 @@ pub fn export(case: &Case, out: &Path) -> Result<Vec<String>> {
     if let Some(damping) = &damping {
         write("damping.mtx", to_text(damping, None, &format!("{title}: damping [N s/m, N m s]")))?;
     }
-    let load = column(&system.load).filter(|_| system.load.iter().any(|f| *f != 0.0));
+    let load = column(&system.load).filter(|_| !linearised && system.load.iter().any(|f| *f != 0.0));
     if let Some(load) = &load {
         write("load.mtx", to_text(load, None, &format!("{title}: external force [N, N m]")))?;
     }
     write("dofs.csv", dofs(&prepared))?;
     let points_files = points_files(&prepared);
-    for pair in &system.pairs {
+    for pair in system.pairs.iter().filter(|_| !linearised) {
         write(&points_files[&pair.name], points(pair))?;
     }
     let matrices = Matrices {
@@ -65,11 +79,18 @@ pub fn export(case: &Case, out: &Path) -> Result<Vec<String>> {
         term: BTreeMap::new(),
     };
     let mut left_out = Vec::new();
-    if case.prestress {
+    if case.prestress && !linearised {
         left_out
             .push("The geometric stiffness of the preload is not part of the exported stiffness".to_string());
     }
     let mut exported = as_matrices(case, matrices, &points_files);
+    if linearised {
+        exported.contact.clear();
+        left_out.extend(exported.transient.take().map(|_| gone("transient", "the laws of its contacts")));
+        keep(&mut exported.modes, &mut left_out, ("modes", "its closed contacts"), |modes| {
+            modes.contact == ContactState::Open
+        });
+    }
     left_out.extend(keep_what_is_there(case, &mut exported));
     let mut names = FileNames::default();
     for (name, data) in &mut exported.measured {
@@ -82,6 +103,23 @@ pub fn export(case: &Case, out: &Path) -> Result<Vec<String>> {
     }
     write("case.toml", exported.to_toml())?;
     Ok(left_out)
+}
+
+/// M, C and K of small motions about steady sliding: with K_σ of the preload, and K_c and C_c of the contacts.
+fn small_motions(prepared: &Prepared) -> Result<ConstantMatrices> {
+    pressed::check(prepared)?;
+    let system = &prepared.system;
+    let steady = solve_steady(system, &prepared.steady_options(), &())?;
+    let [contact_stiffness, contact_damping] = linearize(system, &steady).assembled(system);
+    let tangent = tangent_stiffness(system, &steady.displacement)?.into_owned();
+    let structure = Structure { stiffness: tangent.into(), ..system.structure.clone() };
+    let own = System { structure, ..system.clone() }.constant_matrices()?;
+    let stiffness = add_scaled(&[(1.0, &own.stiffness), (1.0, &contact_stiffness)]);
+    let damping = match &own.damping {
+        Some(damping) => Some(add_scaled(&[(1.0, damping), (1.0, &contact_damping)])),
+        None => (contact_damping.compute_nnz() > 0).then_some(contact_damping),
+    };
+    Ok(ConstantMatrices { stiffness, damping, ..own })
 }
 
 /// A vector as a matrix of one column.

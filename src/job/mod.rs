@@ -72,7 +72,7 @@ mod verify;
 pub use analyse::{CaseWarnings, analyse, check_case};
 pub use analyses::{ANALYSES, Analysis, Selection};
 pub use calibrate::Coordinate;
-pub use export::export;
+pub use export::{ContactAs, export};
 pub use imported::{read_points, read_rows};
 #[cfg(feature = "cli")]
 pub use known::origin;

@@ -8,7 +8,7 @@ use super::run::CaseRun;
 use super::two_dof::TwoDof;
 use crate::case::{Case, ModelChoice, TransientAnalysis, read_case};
 use crate::error::{Error, Fault, Result};
-use crate::job::{Histories, Prepared, ResultStage, Selection, analyse, export};
+use crate::job::{ContactAs, Histories, Prepared, ResultStage, Selection, analyse, export};
 use crate::linalg::c64;
 use crate::progress::Observer;
 use crate::results::{CheckedCase, ComplexResult, NamedModes, RunResults, TransientResult};
@@ -235,7 +235,7 @@ fn compute(runs: &mut Runs, CheckQuantity { kind, set, .. }: &CheckQuantity, nam
 /// The largest change of an eigenvalue when the case is exported as matrices and read again.
 fn exported(runs: &mut Runs, set: &[(String, f64)]) -> Result<f64> {
     let folder = super::scratch::scratch()?;
-    export(&runs.case_with(set)?, folder.path())?;
+    export(&runs.case_with(set)?, ContactAs::Points, folder.path())?;
     let again = read_case(&folder.path().join("case.toml"))?;
     let results = analyse(&Prepared::new(&again)?, Selection::Only("cea"), &mut |_| Ok(()), runs.observer)?;
     Ok(change(&eigenvalues(runs.with(set)?), &eigenvalues(&results)))

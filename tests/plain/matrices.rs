@@ -11,7 +11,7 @@ use stridor::bounds::{Origin::*, least, within};
 use stridor::case::Case;
 use stridor::equilibrium::steady_sliding;
 use stridor::error::Result;
-use stridor::job::{Prepared, Selection, analyse, export};
+use stridor::job::{ContactAs, Prepared, Selection, analyse, export};
 use stridor::results::{ComplexResult, MeasuredComparison, NamedModes, RunResults, SteadyResult};
 
 /// M, C, K of a random system.
@@ -183,23 +183,28 @@ fn an_exported_case_has_the_same_modes() {
         let mut case = stridor::case::read_case(&root.join(name).join("case.toml")).unwrap();
         let cea = case.cea.as_mut().unwrap();
         (cea.band[1], cea.basis_below) = (cea.band[1].min(600.0), cea.basis_below.min(900.0));
-        let folder = tempfile::tempdir().unwrap();
-        export(&case, folder.path()).unwrap();
-        let exported = stridor::case::read_case(&folder.path().join("case.toml")).unwrap();
         let of = |case: &Case| {
             let prepared = Prepared::new(case).unwrap();
             analyse(&prepared, Selection::Only("cea"), &mut |_| Ok(()), &()).unwrap()
         };
-        let (direct, back) = (of(&case), of(&exported));
+        let exported = |contact| {
+            let folder = tempfile::tempdir().unwrap();
+            export(&case, contact, folder.path()).unwrap();
+            of(&stridor::case::read_case(&folder.path().join("case.toml")).unwrap())
+        };
+        let (direct, back, linearised) =
+            (of(&case), exported(ContactAs::Points), exported(ContactAs::Matrices));
         let (a, b) = (direct.get::<SteadyResult>().unwrap(), back.get::<SteadyResult>().unwrap());
         for (p, q) in a.state.points.iter().zip(&b.state.points) {
             let scale = a.state.points.iter().map(|p| p.penetration.abs()).fold(0.0, f64::max);
             assert!(within((p.penetration - q.penetration).abs(), 1e-9 * scale, Tolerance), "{name}");
         }
-        let (a, b) = (eigenvalues(&direct), eigenvalues(&back));
-        assert!(!a.is_empty() && a.len() == b.len(), "{name}: {} {}", a.len(), b.len());
-        for (x, y) in a.iter().zip(&b) {
-            assert!(within((x - y).norm(), 1e-9 * x.norm(), Tolerance), "{name}: {x} {y}");
+        for other in [back, linearised] {
+            let (a, b) = (eigenvalues(&direct), eigenvalues(&other));
+            assert!(!a.is_empty() && a.len() == b.len(), "{name}: {} {}", a.len(), b.len());
+            for (x, y) in a.iter().zip(&b) {
+                assert!(within((x - y).norm(), 1e-9 * x.norm(), Tolerance), "{name}: {x} {y}");
+            }
         }
     }
 }
@@ -211,7 +216,7 @@ fn names_of_contacts_need_not_be_names_of_files() {
     let named = text.replace("[contact.belt]", "[contact.\"pad/left\"]");
     let case = stridor::case::Case::parse("case.toml", &named, ".".into()).unwrap();
     let folder = tempfile::tempdir().unwrap();
-    export(&case, folder.path()).unwrap();
+    export(&case, ContactAs::Points, folder.path()).unwrap();
     assert!(folder.path().join("contact_pad_left.csv").exists());
     let exported = stridor::case::read_case(&folder.path().join("case.toml")).unwrap();
     assert!(exported.contact.contains_key("pad/left"));
@@ -262,7 +267,7 @@ probe.place = { at = [0, 0, 0], direction = [1, 0, 0] }
 probe.region = { on = "block", direction = [1, 0, 0] }
 "#;
     let case = Case::parse("case.toml", &text, from.path().into()).unwrap();
-    let left_out = export(&case, to.path()).unwrap().join("\n");
+    let left_out = export(&case, ContactAs::Points, to.path()).unwrap().join("\n");
     let exported = stridor::case::read_case(&to.path().join("case.toml")).unwrap();
     let names = |table: &str, kept: &str, gone: &str| {
         assert!(left_out.contains(&format!("[{table}.{gone}] is left out")), "{left_out}");
@@ -277,7 +282,12 @@ probe.region = { on = "block", direction = [1, 0, 0] }
     let pushed = text + "push.knock = { on = \"block\", force = [\"1 N\", 0, 0], duration = \"0.1 s\" }\n";
     let pushed = Case::parse("case.toml", &pushed, from.path().into()).unwrap();
     let without = tempfile::tempdir().unwrap();
-    assert!(export(&pushed, without.path()).unwrap().join("\n").contains("[transient] is left out"));
+    assert!(
+        export(&pushed, ContactAs::Points, without.path())
+            .unwrap()
+            .join("\n")
+            .contains("[transient] is left out")
+    );
     assert!(stridor::case::read_case(&without.path().join("case.toml")).unwrap().transient.is_none());
     assert!(left_out.contains("[calibrate] is left out") && exported.calibrate.is_none(), "{left_out}");
     let of = |case: &Case| {

@@ -299,7 +299,7 @@ fn sweeps_and_exported_matrices_have_the_modes_of_single_analyses() {
         }
     }
     let folder = tempfile::tempdir().unwrap();
-    stridor::job::export(&case.without_studies(), folder.path()).unwrap();
+    stridor::job::export(&case.without_studies(), stridor::job::ContactAs::Points, folder.path()).unwrap();
     let again = stridor::case::read_case(&folder.path().join("case.toml")).unwrap();
     for (a, b) in eigenvalues(&case).iter().zip(&eigenvalues(&again)) {
         assert!(within((a - b).norm(), 1e-7 * a.norm(), RoundOff), "{a} {b}");
