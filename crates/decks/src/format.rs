@@ -1,0 +1,94 @@
+//! Formats of files, by their names and by how they begin.
+
+use crate::deck::Deck;
+use crate::text::Files;
+use std::path::Path;
+use stridor_base::error::{Error, Fault, Result, nearest};
+
+/// A format.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    /// Input files of Abaqus and CalculiX.
+    Abaqus,
+}
+
+/// A row of the table of formats.
+struct Row {
+    format: Format,
+    /// Its name on the command line.
+    name: &'static str,
+    /// Endings of its files, in small letters.
+    endings: &'static [&'static str],
+    read: fn(&Path, &mut Files) -> Result<Deck>,
+}
+
+/// All of them.
+const FORMATS: &[Row] = &[Row {
+    format: Format::Abaqus,
+    name: "abaqus",
+    endings: &["inp"],
+    read: crate::abaqus::read,
+}];
+
+impl Format {
+    /// The row of the table.
+    fn row(self) -> &'static Row {
+        FORMATS.iter().find(|row| row.format == self).unwrap_or(&FORMATS[0])
+    }
+
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        self.row().name
+    }
+
+    /// The names of all.
+    pub fn names() -> impl Iterator<Item = &'static str> {
+        FORMATS.iter().map(|row| row.name)
+    }
+
+    /// The format of this name.
+    ///
+    /// # Errors
+    /// No such format.
+    pub fn named(name: &str) -> Result<Format> {
+        if let Some(row) = FORMATS.iter().find(|row| row.name.eq_ignore_ascii_case(name)) {
+            return Ok(row.format);
+        }
+        let names: Vec<_> = Format::names().collect();
+        let fault = Fault::new("--format", format!("`{name}`"), format!("one of {}", names.join(", ")));
+        Err(Error::input(match nearest(name, Format::names()) {
+            Some(near) => fault.with_help(format!("Did you mean `{near}`?")),
+            None => fault,
+        }))
+    }
+
+    /// The format of a file by the ending of its name.
+    ///
+    /// # Errors
+    /// An ending of no format.
+    pub fn of_path(path: &Path) -> Result<Format> {
+        let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+        if let Some(row) = FORMATS.iter().find(|row| row.endings.contains(&ending.as_str())) {
+            return Ok(row.format);
+        }
+        let all: Vec<_> = FORMATS.iter().map(|row| format!(".{} ({})", row.endings.join(", ."), row.name)).collect();
+        let expected = format!("a file that ends in {}", all.join(", "));
+        let found = if ending.is_empty() { "a name without an ending".into() } else { format!("a name that ends in `.{ending}`") };
+        let help = "Say what it is with --format";
+        Err(Error::input(Fault::new(path.display().to_string(), found, expected).with_help(help)))
+    }
+}
+
+/// Reads the model in a file, of a format that is said or that the ending of its name is of.
+///
+/// # Errors
+/// Every fault of the file and of those it includes: what cannot be read as what it should be, and what is named but not there.
+pub fn read(path: &Path, format: Option<Format>) -> Result<Deck> {
+    let format = format.map_or_else(|| Format::of_path(path), Ok)?;
+    let mut files = Files::default();
+    let mut deck = (format.row().read)(path, &mut files)?;
+    let Files { paths, faults } = files;
+    faults.into_result(())?;
+    deck.files = paths;
+    Ok(deck)
+}

@@ -1,0 +1,20 @@
+//! Finite-element models of other programs as one description, [`Deck`].
+//!
+//! * [`read`]: reads a file by its name or by what it begins with.
+//! * [`Deck`]: nodes, elements, sets, materials, constraints, contacts, loads; plain data in the units of the file.
+//! * [`Ledger`]: what was read in part, or not at all, with its places.
+//!
+//! One folder a format; each reads lines with their places into [`Deck`] and knows nothing of a case.
+
+mod abaqus;
+mod deck;
+mod format;
+mod ledger;
+mod text;
+
+pub use deck::{
+    Analysis, Contact, Coupling, CouplingKind, Deck, Elastic, Element, Equation, Frame, Load, LoadOn, Material,
+    Motion, Node, Place, PointMass, Profile, Section, SectionShape, Set, ShellFace, Spring, Support, Surface, Tie,
+};
+pub use format::{Format, read};
+pub use ledger::{Ledger, Unread, Weight};

@@ -1,0 +1,66 @@
+//! Files as lines with their places: text of any encoding, files that a line includes, faults.
+
+use crate::deck::{Place, place_words};
+use std::path::{Path, PathBuf};
+use stridor_base::error::read::{not_text, plain, read_bytes};
+use stridor_base::error::{Error, Fault, Faults, Result};
+
+/// The files that were read, and what is wrong in them.
+#[derive(Debug, Default)]
+pub(crate) struct Files {
+    /// Their paths: a [`Place`] counts in them.
+    pub paths: Vec<PathBuf>,
+    /// What is wrong.
+    pub faults: Faults,
+}
+
+/// The most faults that are kept: a file of another kind has one in every line.
+const MOST_FAULTS: usize = 1000;
+
+impl Files {
+    /// The text of a file, whose bytes need not be UTF-8 where they are a comment, and its number.
+    ///
+    /// # Errors
+    /// A file that cannot be read.
+    pub fn read(&mut self, path: &Path) -> Result<(u32, String)> {
+        let bytes = read_bytes(path, "a model of another program")?;
+        let number = self.paths.len() as u32;
+        self.paths.push(path.to_path_buf());
+        let text = plain(&bytes);
+        if let Some(at) = text.iter().position(|byte| *byte == 0) {
+            return Err(Error::input(not_text(&text, at, &path.display().to_string())));
+        }
+        let text = match std::str::from_utf8(&text) {
+            Ok(text) => text.to_string(),
+            // Latin-1: every byte is the character of its number.
+            Err(_) => text.iter().map(|byte| char::from(*byte)).collect(),
+        };
+        Ok((number, text))
+    }
+
+    /// Notes a fault.
+    pub fn fault(&mut self, place: Place, found: impl Into<String>, expected: impl Into<String>) {
+        self.fault_with_help(place, found, expected, "");
+    }
+
+    /// Notes a fault with advice.
+    pub fn fault_with_help(
+        &mut self,
+        place: Place,
+        found: impl Into<String>,
+        expected: impl Into<String>,
+        help: &str,
+    ) {
+        let place = place_words(&self.paths, place);
+        let fault = Fault::new(place, found, expected).with_help(help);
+        // A part that is placed twice is read twice.
+        if self.faults.0.len() < MOST_FAULTS && !self.faults.0.contains(&fault) {
+            self.faults.push(fault);
+        }
+    }
+
+    /// Whether so many faults were found that no more are looked for.
+    pub fn too_many(&self) -> bool {
+        self.faults.0.len() >= MOST_FAULTS
+    }
+}
