@@ -13,8 +13,9 @@ mod ledger;
 mod text;
 
 pub use deck::{
-    Analysis, Contact, Coupling, CouplingKind, Deck, Elastic, Element, Equation, Frame, Load, LoadOn, Material,
-    Motion, Node, Place, PointMass, Profile, Section, SectionShape, Set, ShellFace, Spring, Support, Surface, Tie,
+    Analysis, Contact, Coupling, CouplingKind, Deck, Elastic, Element, Equation, Frame, Load, LoadOn,
+    Material, Motion, Node, Place, PointMass, Profile, Section, SectionShape, Set, ShellFace, Spring,
+    Support, Surface, Tie,
 };
 pub use format::{Format, read};
 pub use ledger::{Ledger, Unread, Weight};

@@ -1,0 +1,122 @@
+//! *PART, *ASSEMBLY, *INSTANCE: a part is read once for each of its instances, where that is placed.
+
+use super::names::{Names, key};
+use super::space::{Placement, Space};
+use super::{Block, Blocks, Found, Reader};
+use crate::ledger::Weight;
+
+/// The blocks of a part.
+struct Part<'b> {
+    blocks: Vec<&'b Block>,
+    used: bool,
+}
+
+impl Reader {
+    /// Reads the mesh of all instances into spaces of their own; gives the blocks of the model with their spaces, the others of parts
+    /// among them.
+    pub fn instances_of<'b>(&mut self, all: &'b Blocks) -> Vec<(usize, &'b Block)> {
+        let mut parts: Names<Part<'b>> = Names::default();
+        let mut placed: Vec<(usize, &'b Block)> = Vec::new();
+        let mut part: Option<String> = None;
+        let mut instance: Option<usize> = None;
+        for block in &all.blocks {
+            let found = Found { blocks: all, block };
+            match block.keyword.as_str() {
+                "PART" => {
+                    let name = found.option("NAME").unwrap_or_default().to_string();
+                    parts.entry(&name, || Part { blocks: Vec::new(), used: false });
+                    part = Some(name);
+                }
+                "ENDPART" => part = None,
+                "ASSEMBLY" | "ENDASSEMBLY" => {}
+                "INSTANCE" => {
+                    let space = self.instance(found);
+                    let of = found.option("PART").unwrap_or_default();
+                    match parts.get(of).map(|part| part.blocks.clone()) {
+                        Some(blocks) => {
+                            parts.entry(of, || unreachable!("it is there")).used = true;
+                            placed.extend(blocks.into_iter().map(|block| (space, block)));
+                        }
+                        None if of.is_empty() => {}
+                        None => self.files.fault(
+                            block.place,
+                            format!("*INSTANCE of part `{of}`"),
+                            "the name of a *PART above",
+                        ),
+                    }
+                    instance = Some(space);
+                }
+                "ENDINSTANCE" => instance = None,
+                _ => match (&part, instance) {
+                    (Some(name), _) => {
+                        parts.entry(name, || unreachable!("it is there")).blocks.push(block);
+                    }
+                    (None, Some(space)) => placed.push((space, block)),
+                    (None, None) => placed.push((0, block)),
+                },
+            }
+        }
+        for part in parts.all.iter().filter(|part| !part.used) {
+            let Some(first) = part.blocks.first() else { continue };
+            self.deck.ledger.note(
+                Weight::Perhaps,
+                "*PART",
+                "a part without an instance is not in the model",
+                first.place,
+            );
+        }
+        // Instances before the model, which names what is in them.
+        placed.sort_by_key(|(space, _)| (*space == 0, *space));
+        placed
+    }
+
+    /// A space for an instance.
+    fn instance(&mut self, found: Found<'_>) -> usize {
+        let name = found.option("NAME").unwrap_or_default().to_string();
+        let space = self.spaces.len();
+        if self.instances.get(&name).is_some() {
+            self.files.fault(
+                found.place(),
+                format!("a second *INSTANCE `{name}`"),
+                "names that are different",
+            );
+        }
+        self.instances.entry(&key(&name), || space);
+        let placement = self.placement(found);
+        self.spaces.push(Space { name, placement, ..Space::default() });
+        space
+    }
+
+    /// The first line of data is a translation; the second two points of an axis and an angle in degrees about it, after the translation.
+    fn placement(&mut self, found: Found<'_>) -> Option<Placement> {
+        let mut rows = found.rows();
+        let translation = self.numbers::<3>(&rows.next()?, 0)?;
+        let one = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let Some(row) = rows.next() else { return Some(Placement { rotation: one, translation }) };
+        let [ax, ay, az, bx, by, bz, angle] = self.numbers::<7>(&row, 0)?;
+        let axis = [bx - ax, by - ay, bz - az];
+        let length = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
+        if length == 0.0 {
+            self.files.fault(row.place, "two points of an axis that are one", "two points");
+            return None;
+        }
+        let rotation = rotation(axis.map(|x| x / length), angle.to_radians());
+        let turn = Placement { rotation, translation: [0.0; 3] };
+        // R (x + t − a) + a.
+        let moved: [f64; 3] = std::array::from_fn(|i| translation[i] - [ax, ay, az][i]);
+        let turned = turn.turn(moved);
+        Some(Placement { rotation, translation: std::array::from_fn(|i| turned[i] + [ax, ay, az][i]) })
+    }
+}
+
+/// R = I cos α + (1 − cos α) n nᵀ + sin α n×, about a unit vector n.
+fn rotation(n: [f64; 3], angle: f64) -> [[f64; 3]; 3] {
+    let (sin, cos) = angle.sin_cos();
+    let cross = [[0.0, -n[2], n[1]], [n[2], 0.0, -n[0]], [-n[1], n[0], 0.0]];
+    std::array::from_fn(|i| {
+        std::array::from_fn(|j| {
+            let one = if i == j { cos } else { 0.0 };
+            one + (1.0 - cos) * n[i] * n[j] + sin * cross[i][j]
+        })
+    })
+}

@@ -1,0 +1,154 @@
+//! *NSET, *ELSET.
+
+use super::space::Item;
+use super::{Found, Reader, Row};
+use crate::deck::Place;
+use crate::ledger::Weight;
+
+/// The most members that lines of `GENERATE` may name in all, beyond those that are there.
+const MOST_STEPS: u64 = 1_000_000_000;
+
+impl Reader {
+    /// *NSET: numbers and names of sets, ranges with GENERATE, or the nodes of a set of elements.
+    pub fn node_set(&mut self, space: usize, found: Found<'_>) {
+        let Some(name) = found.option("NSET") else {
+            self.files.fault(found.place(), "*NSET without a name", "*NSET, NSET=…");
+            return;
+        };
+        let of = self.space_of(space, found);
+        let mut members = Vec::new();
+        if let Some(elements) = found.option("ELSET") {
+            let items = self.items_of(of, elements, found.place()).unwrap_or_default();
+            members.extend(items.into_iter().flat_map(|item| self.nodes_of_item(item)));
+        }
+        for row in found.rows() {
+            if found.block.has("GENERATE") {
+                members.extend(self.range(
+                    &row,
+                    |reader, number| reader.spaces[of].nodes.get(&number).copied(),
+                    of,
+                    true,
+                ));
+                continue;
+            }
+            for cell in row.cells.iter().filter(|cell| !cell.is_empty()) {
+                if cell.parse::<u64>().is_ok() && self.nodes_called(of, cell).is_none() {
+                    self.missing("NSET", row.place);
+                    continue;
+                }
+                members.extend(self.nodes_of(of, cell, row.place).unwrap_or_default());
+            }
+        }
+        let set = self.spaces[space].node_set(name);
+        set.members.extend(members);
+        set.internal |= found.block.has("INTERNAL");
+    }
+
+    /// *ELSET: numbers and names of sets, or ranges with GENERATE.
+    pub fn element_set(&mut self, space: usize, found: Found<'_>) {
+        let Some(name) = found.option("ELSET") else {
+            self.files.fault(found.place(), "*ELSET without a name", "*ELSET, ELSET=…");
+            return;
+        };
+        let of = self.space_of(space, found);
+        let mut members = Vec::new();
+        for row in found.rows() {
+            if found.block.has("GENERATE") {
+                members.extend(self.range(
+                    &row,
+                    |reader, number| reader.spaces[of].elements.get(&number).copied(),
+                    of,
+                    false,
+                ));
+                continue;
+            }
+            for cell in row.cells.iter().filter(|cell| !cell.is_empty()) {
+                if cell.parse::<u64>().is_ok() && self.items_called(of, cell).is_none() {
+                    self.missing("ELSET", row.place);
+                    continue;
+                }
+                members.extend(self.items_of(of, cell, row.place).unwrap_or_default());
+            }
+        }
+        let set = self.spaces[space].element_set(name);
+        set.items.extend(members);
+        set.internal |= found.block.has("INTERNAL");
+    }
+
+    /// The space that a set's numbers are of: its own, or that of INSTANCE.
+    fn space_of(&mut self, space: usize, found: Found<'_>) -> usize {
+        let Some(name) = found.option("INSTANCE") else { return space };
+        match self.instances.get(name) {
+            Some(instance) => *instance,
+            None => {
+                if self.spaces.len() > 1 {
+                    self.files.fault(found.place(), format!("INSTANCE={name}"), "the name of an *INSTANCE");
+                } else {
+                    let why = "the file has no instances: the numbers are those of the model";
+                    self.deck.ledger.note(Weight::Perhaps, "INSTANCE", why, found.place());
+                }
+                space
+            }
+        }
+    }
+
+    /// The nodes of an element.
+    pub fn nodes_of_item(&self, item: Item) -> Vec<usize> {
+        match item {
+            Item::Shape(index) => self.deck.elements[index].nodes.clone(),
+            Item::Point(index) => self.points[index].nodes.clone(),
+            Item::Unread => Vec::new(),
+        }
+    }
+
+    /// What is there of first, first + step … last.
+    fn range<T>(
+        &mut self,
+        row: &Row<'_>,
+        get: impl Fn(&Self, u64) -> Option<T>,
+        space: usize,
+        nodes: bool,
+    ) -> Vec<T> {
+        let Row { place, .. } = *row;
+        let Some([first, last, step]) = self.range_numbers(row) else { return Vec::new() };
+        let own = &self.spaces[space];
+        let known = if nodes { own.nodes.len() } else { own.elements.len() } as u64;
+        let count = (last - first) / step + 1;
+        // A range of more than there is: it is quicker to look at what is there.
+        if count > MOST_STEPS.min(known.saturating_mul(64).max(1024)) {
+            let numbers: Vec<u64> = if nodes {
+                own.nodes.keys().copied().collect()
+            } else {
+                own.elements.keys().copied().collect()
+            };
+            let mut inside: Vec<u64> = numbers
+                .into_iter()
+                .filter(|n| *n >= first && *n <= last && (*n - first) % step == 0)
+                .collect();
+            inside.sort_unstable();
+            return inside.into_iter().filter_map(|number| get(self, number)).collect();
+        }
+        let found: Vec<T> = (0..count).filter_map(|k| get(self, first + k * step)).collect();
+        if found.is_empty() {
+            self.missing(if nodes { "NSET" } else { "ELSET" }, place);
+        }
+        found
+    }
+
+    /// Notes a member of a set that is not in the file, as these programs do.
+    fn missing(&mut self, keyword: &str, place: Place) {
+        let why = "members that are not in the file";
+        self.deck.ledger.note(Weight::Perhaps, format!("*{keyword}"), why, place);
+    }
+
+    fn range_numbers(&mut self, row: &Row<'_>) -> Option<[u64; 3]> {
+        let first = self.label(row.place, row.cell(0))?;
+        let last = if row.cell(1).is_empty() { first } else { self.label(row.place, row.cell(1))? };
+        let step = if row.cell(2).is_empty() { 1 } else { self.label(row.place, row.cell(2))? };
+        if last < first {
+            self.files.fault(row.place, format!("a range from {first} to {last}"), "first, last, step");
+            return None;
+        }
+        Some([first, last, step])
+    }
+}

@@ -1,0 +1,58 @@
+//! *HEADING, *STEP, *FREQUENCY, *COMPLEX FREQUENCY.
+
+use super::{Found, Reader, blocks};
+use crate::deck::Analysis;
+
+/// A step that is being read.
+#[derive(Debug, Default)]
+pub(super) struct Step {
+    analysis: Option<Analysis>,
+}
+
+impl Reader {
+    /// *HEADING: the first line is the title.
+    pub fn heading(&mut self, _: usize, found: Found<'_>) {
+        if let Some((_, line)) = found.lines().next() {
+            self.deck.title = line.to_string();
+        }
+    }
+
+    /// *STEP.
+    pub fn begin_step(&mut self, _: usize, _: Found<'_>) {
+        self.finish_step();
+        self.step = Some(Step::default());
+    }
+
+    /// *END STEP.
+    pub fn end_step(&mut self, _: usize, _: Found<'_>) {
+        self.finish_step();
+    }
+
+    /// *FREQUENCY: number of modes, lowest and highest frequency.
+    pub fn frequency(&mut self, _: usize, found: Found<'_>) {
+        let (count, band) = self.wanted(found);
+        self.step.get_or_insert_default().analysis = Some(Analysis::Modes { count, band });
+    }
+
+    /// *COMPLEX FREQUENCY: the same.
+    pub fn complex_frequency(&mut self, _: usize, found: Found<'_>) {
+        let (count, band) = self.wanted(found);
+        self.step.get_or_insert_default().analysis = Some(Analysis::ComplexModes { count, band });
+    }
+
+    fn wanted(&mut self, found: Found<'_>) -> (Option<usize>, [Option<f64>; 2]) {
+        let Some(row) = found.rows().next() else { return (None, [None; 2]) };
+        let cell = row.cell(0).trim_end_matches('.');
+        let count = cell.parse().ok().filter(|count| *count > 0);
+        if count.is_none() && !cell.is_empty() {
+            self.files.fault(row.place, format!("`{}`", blocks::short(cell)), "the number of modes, or none");
+        }
+        let mut at = |k: usize| if row.cell(k).is_empty() { None } else { self.number(&row, k) };
+        (count, [at(1), at(2)])
+    }
+
+    /// Keeps what the step asked for.
+    pub fn finish_step(&mut self) {
+        self.deck.analyses.extend(self.step.take().and_then(|step| step.analysis));
+    }
+}
