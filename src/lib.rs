@@ -16,6 +16,7 @@
 //! | [`linalg`] | sparse symmetric factorisation, eigenvalues; knows no mechanics |
 //! | [`system`] | M, C, K and the sliding interface: the input of every analysis |
 //! | [`mesh`] | Gmsh files, generated discs and plates, regions, quality |
+//! | [`decks`] | models of other programs: Abaqus, CalculiX, NASTRAN, ANSYS, universal files |
 //! | [`structure`] | elements, constraints, assembly |
 //! | [`contact`] | pairing of two bodies, normal and friction laws |
 //! | [`equilibrium`] | steady sliding and its linearisation |
@@ -72,6 +73,7 @@ pub mod validation;
 // Members of the workspace, below `crates/`.
 pub use stridor_base::{bounds, connected, error, input, memory, numbers, pages, progress};
 pub use stridor_dataset as dataset;
+pub use stridor_decks as decks;
 pub use stridor_linalg as linalg;
 pub use stridor_measured as measured;
 pub use stridor_mesh as mesh;

@@ -27,7 +27,12 @@ Examples:
 
 pub const EXPORT: &str = "\
 Examples:
-  stridor export rig/case.toml --out matrices";
+  stridor export rig/case.toml --out matrices
+  stridor export rig/case.toml --linearised --out matrices";
+
+pub const IMPORT: &str = "\
+Examples:
+  stridor import brake.inp --unit mm --out brake";
 
 pub const NEW: &str = "\
 Examples:

@@ -11,6 +11,7 @@ mod engine;
 mod error_json;
 mod examples;
 mod export;
+mod import;
 mod interrupt;
 mod mesh;
 mod new;
@@ -57,6 +58,9 @@ enum Action {
     /// Write M, C, K, the degrees of freedom and the contact points of a case, for other programs
     #[command(after_help = examples::EXPORT)]
     Export(export::ExportOptions),
+    /// Make a case and a mesh of a model of another program
+    #[command(after_help = examples::IMPORT)]
+    Import(import::ImportOptions),
     /// Write a case and a mesh to start from
     #[command(after_help = examples::NEW)]
     New(new::NewOptions),
@@ -139,6 +143,7 @@ fn act(command: &Command, program: clap::Command, ranks: Option<&dyn Ranks>) -> 
         Action::Check(options) => check::run(options, common),
         Action::Schema(options) => schema::run(options, common),
         Action::Export(options) => export::run(options, common),
+        Action::Import(options) => import::run(options, common),
         Action::New(options) => new::run(options, common),
         Action::Mesh(action) => mesh::run(action, common),
         Action::Validate(options) => validate::run(options, common),

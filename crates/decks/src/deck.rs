@@ -219,6 +219,16 @@ pub enum Profile {
     },
 }
 
+impl Profile {
+    /// A \[length²\].
+    pub fn area(self) -> f64 {
+        match self {
+            Profile::Round { diameter } => std::f64::consts::PI * diameter * diameter / 4.0,
+            Profile::General { area, .. } => area,
+        }
+    }
+}
+
 /// A frame in which degrees of freedom count.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Frame {

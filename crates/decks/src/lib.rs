@@ -2,16 +2,19 @@
 //!
 //! * [`read`]: reads a file by its name or by what it begins with.
 //! * [`Deck`]: nodes, elements, sets, materials, constraints, contacts, loads; plain data in the units of the file.
+//! * [`convert`]: a mesh, a case and a page of what was read.
 //! * [`Ledger`]: what was read in part, or not at all, with its places.
 //!
-//! One folder a format; each reads lines with their places into [`Deck`] and knows nothing of a case.
+//! One folder a format; each reads lines with their places into [`Deck`] and knows nothing of a case; `convert` knows nothing of formats.
 
 mod abaqus;
+mod convert;
 mod deck;
 mod format;
 mod ledger;
 mod text;
 
+pub use convert::{Converted, Units, convert};
 pub use deck::{
     Analysis, Contact, Coupling, CouplingKind, Deck, Elastic, Element, Equation, Frame, Load, LoadOn,
     Material, Motion, Node, Place, PointMass, Profile, Section, SectionShape, Set, ShellFace, Spring,

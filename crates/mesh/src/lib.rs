@@ -43,7 +43,7 @@ pub use kind::{CellKind, CellShape, CellTable, NamedKind, NumberedKind, Order, P
 pub use locate::{FaceTree, LocatedPoint};
 pub use quadrature::QuadraturePoint;
 pub use skin::{Side, outer_faces, outward};
-pub use write::{to_msh, write};
+pub use write::{to_msh, to_msh_exactly, write};
 
 use stridor_base::error::{Error, Fault, Result, nearest};
 

@@ -31,11 +31,23 @@ pub fn write(path: &Path, mesh: &Mesh, unit_in_metres: f64) -> Result<()> {
 /// A mesh whose coordinates are not finite, a unit that is not positive, region names with a quotation mark or
 /// a line break.
 pub fn to_msh(mesh: &Mesh, unit_in_metres: f64) -> Result<String> {
+    let largest = mesh.nodes.iter().flatten().fold(0.0f64, |m, c| m.max(c.abs())) / unit_in_metres;
+    text(mesh, unit_in_metres, 10f64.powf((largest * 1e-9).log10().floor()))
+}
+
+/// The same in metres, and every coordinate is read as it is here.
+///
+/// # Errors
+/// See [`to_msh`].
+pub fn to_msh_exactly(mesh: &Mesh) -> Result<String> {
+    text(mesh, 1.0, 0.0)
+}
+
+/// The text with coordinates that are multiples of a power of ten, or as they are where that is zero.
+fn text(mesh: &Mesh, unit_in_metres: f64, digit: f64) -> Result<String> {
     refuse(mesh, unit_in_metres)?;
     let names = physical_tags(mesh);
     let entities = entities(mesh);
-    let largest = mesh.nodes.iter().flatten().fold(0.0f64, |m, c| m.max(c.abs())) / unit_in_metres;
-    let digit = 10f64.powf((largest * 1e-9).log10().floor());
     let mut out = String::from("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n");
     // Writing to a String cannot fail.
     let mut line = |text: std::fmt::Arguments<'_>| writeln!(out, "{text}").expect("memory");

@@ -1,0 +1,102 @@
+//! `stridor import`: a case and a mesh of a model of another program.
+
+use super::mesh::refuse_existing;
+use super::output::{Common, SUCCESS, give, say};
+use crate::case::read_case;
+use crate::decks::{self, Converted, Format, Units, convert};
+use crate::error::{Error, Result};
+use crate::job::{Prepared, check_case};
+use crate::mesh::to_msh_exactly;
+use clap::Args;
+use serde_json::json;
+use std::path::{Path, PathBuf};
+
+#[derive(Args)]
+pub struct ImportOptions {
+    /// The file of the other program
+    file: PathBuf,
+    /// The units of its numbers, which no file states: m, mm (t, N, MPa), mm-kg, mm-kg-ms, cm, in
+    #[arg(long, value_name = "UNITS")]
+    unit: String,
+    /// The folder to create: case.toml, mesh.msh and import.md, which says what was read
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+    /// The format of the file, where the ending of its name is that of another
+    #[arg(long, value_name = "FORMAT")]
+    format: Option<String>,
+}
+
+pub fn run(options: &ImportOptions, common: &Common) -> Result<u8> {
+    let folder = &options.out;
+    refuse_existing(folder, "Choose another name, or move it away")?;
+    let units = Units::named(&options.unit)?;
+    let format = options.format.as_deref().map(Format::named).transpose()?;
+    let deck = decks::read(&options.file, format)?;
+    let made = convert(&deck, units)?;
+    write(folder, &made)?;
+    let case = folder.join("case.toml");
+    let valid = valid(&case);
+    if common.json {
+        let fault = valid.as_ref().err().map(ToString::to_string);
+        let rows = made.ledger.rows().map(|row| {
+            json!({ "what": row.what, "why": row.why, "matters": row.weight.word(), "first": deck.words(row.first), "count": row.count })
+        });
+        give(format!(
+            "{:#}",
+            json!({
+                "ok": true, "case": case.display().to_string(), "valid": valid.is_ok(), "fault": fault,
+                "nodes": deck.nodes.len(), "elements": deck.elements.len(), "mass": made.mass,
+                "warnings": made.warnings, "unread": rows.collect::<Vec<_>>(),
+            })
+        ))?;
+        return Ok(SUCCESS);
+    }
+    if !common.quiet {
+        say(summary(&made, deck.nodes.len(), deck.elements.len()))?;
+        match valid {
+            Ok(()) => say(format!("{} is valid. Next: stridor run {}", case.display(), case.display()))?,
+            Err(error) => say(format!("warning: {} does not run yet. {error}", case.display()))?,
+        }
+    }
+    Ok(SUCCESS)
+}
+
+fn write(folder: &Path, made: &Converted) -> Result<()> {
+    let mesh = to_msh_exactly(&made.mesh)?;
+    let failed = |path: &Path, error| Error::io(path, error, "Choose a folder that can be written");
+    std::fs::create_dir_all(folder).map_err(|error| failed(folder, error))?;
+    let schema = super::schema::of_cases();
+    let case = format!("#:schema case.schema.json\n{}", made.case);
+    let files = [
+        ("case.toml", &case),
+        (Converted::MESH_FILE, &mesh),
+        ("import.md", &made.page),
+        ("case.schema.json", &schema),
+    ];
+    for (name, text) in files {
+        let path = folder.join(name);
+        std::fs::write(&path, text).map_err(|error| failed(&path, error))?;
+    }
+    Ok(())
+}
+
+fn valid(case: &Path) -> Result<()> {
+    let case = read_case(case)?;
+    let prepared = Prepared::new(&case)?;
+    check_case(&prepared).map_err(|error| case.places.locate(error)).map(|_| ())
+}
+
+fn summary(made: &Converted, nodes: usize, elements: usize) -> String {
+    let mut text = format!(
+        "{nodes} nodes, {elements} elements, {} kg in all.",
+        crate::numbers::significant(made.mass, 6)
+    );
+    for warning in &made.warnings {
+        text += &format!("\nwarning: {warning}.");
+    }
+    let rows = made.ledger.rows().filter(|row| row.weight == decks::Weight::Matters);
+    for row in rows {
+        text += &format!("\nnot read: {}: {} ({} times)", row.what, row.why, row.count);
+    }
+    text + "\nimport.md says what was read."
+}
