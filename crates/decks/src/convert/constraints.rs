@@ -1,6 +1,6 @@
 //! Supports, rigid bodies, ties, masses, springs and loads of the case.
 
-use super::Converter;
+use super::converter::Converter;
 use super::text::{numbers, quantity, quoted, strings};
 use crate::deck::{CouplingKind, Frame, LoadOn, Support};
 use crate::ledger::Weight;

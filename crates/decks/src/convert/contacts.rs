@@ -1,6 +1,6 @@
 //! Contacts of the case, with the motion of the bodies that turn.
 
-use super::Converter;
+use super::converter::Converter;
 use super::text::{number, numbers, quantity, quoted, strings};
 use crate::deck::{Contact, Motion};
 use crate::ledger::Weight;

@@ -2,6 +2,7 @@
 
 mod constraints;
 mod contacts;
+mod converter;
 mod page;
 mod parts;
 mod regions;
@@ -10,9 +11,9 @@ mod units;
 
 use crate::deck::{Analysis, Deck, Place};
 use crate::ledger::{Ledger, Weight};
-use parts::Part;
+use converter::{Converter, TableNames};
 use regions::Regions;
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 use stridor_base::error::{Fault, Faults, Result};
 use stridor_mesh::Mesh;
 use text::{CaseText, number, quantity, quoted};
@@ -38,37 +39,6 @@ pub struct Converted {
 impl Converted {
     /// The name of the file with the mesh, beside the case.
     pub const MESH_FILE: &'static str = "mesh.msh";
-}
-
-/// What is being made.
-struct Converter<'a> {
-    deck: &'a Deck,
-    units: Units,
-    regions: Regions<'a>,
-    case: CaseText,
-    ledger: Ledger,
-    parts: Vec<Part>,
-    names: TableNames,
-    /// Whether elements, couplings or springs use a node; empty before it is asked.
-    in_use: Vec<bool>,
-    axes_of_materials: HashMap<String, [[f64; 3]; 2]>,
-    warnings: Vec<String>,
-    faults: Faults,
-}
-
-/// Names of tables, each once a kind.
-#[derive(Default)]
-struct TableNames(HashSet<(&'static str, String)>);
-
-impl TableNames {
-    /// A name like `name` that no table of the kind has.
-    fn free(&mut self, kind: &'static str, name: &str) -> String {
-        let numbered = (1..).map(|n| if n == 1 { name.to_string() } else { format!("{name}_{n}") });
-        let mut numbered = numbered.filter(|name| !self.0.contains(&(kind, name.clone())));
-        let name = numbered.next().unwrap_or_default();
-        self.0.insert((kind, name.clone()));
-        name
-    }
 }
 
 /// Makes a mesh and a case of a deck whose numbers are in a system of units.
@@ -128,24 +98,30 @@ pub fn convert(deck: &Deck, units: Units) -> Result<Converted> {
 }
 
 impl Converter<'_> {
-    fn fault(&mut self, place: Place, found: impl Into<String>, expected: &str) {
-        self.faults.push(Fault::new(self.deck.words(place), found, expected));
-    }
-
     /// Named sets and surfaces as regions; sets that the writer made for itself only where something needs them.
     fn sets(&mut self) {
         let deck = self.deck;
-        let parts: Vec<&str> =
-            self.parts.iter().map(|part| deck.sections[part.section].name.as_str()).collect();
+        let parts: Vec<String> = self.parts.iter().map(|part| part.name.clone()).collect();
         for surface in deck.surfaces.iter().filter(|surface| !surface.internal) {
             self.regions.surface(&surface.name, &mut self.ledger);
         }
         for set in deck.node_sets.iter().filter(|set| !set.internal) {
             self.regions.points(&set.name, &set.members);
         }
-        for set in deck.element_sets.iter().filter(|set| !set.internal && !parts.contains(&set.name.as_str()))
-        {
-            self.regions.elements(&set.name, &set.members);
+        for set in deck.element_sets.iter().filter(|set| !set.internal && !parts.contains(&set.name)) {
+            let members: Vec<usize> =
+                set.members.iter().copied().filter(|element| self.regions.has(*element)).collect();
+            if self.pieces(&members).len() > 1 {
+                let why = "a set of pieces that touch is no region; its parts are";
+                self.ledger.note(
+                    Weight::Nothing,
+                    format!("set of elements {}", set.name),
+                    why,
+                    Place::default(),
+                );
+            } else {
+                self.regions.elements(&set.name, &members);
+            }
         }
     }
 

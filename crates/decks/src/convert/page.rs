@@ -1,6 +1,6 @@
 //! What was read, in Markdown: sizes, masses, what each thing became, and what was not read.
 
-use super::Converter;
+use super::converter::Converter;
 use crate::deck::SectionShape;
 use std::fmt::Write;
 use stridor_base::numbers::{given, significant};

@@ -1,24 +1,13 @@
 //! Materials and parts: sections with their elements.
 
-use super::Converter;
+use super::converter::{Converter, Part};
 use super::text::{number, numbers, quantity, quoted};
-use super::units::plausible;
+use super::units::{Units, plausible};
 use crate::deck::{Elastic, Material, Profile, Section, SectionShape};
 use crate::ledger::Weight;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use stridor_base::connected::lowest_connected;
 use stridor_mesh::CellKind;
-
-/// A part of the case.
-#[derive(Debug, Clone)]
-pub(super) struct Part {
-    /// Its region.
-    pub name: String,
-    /// Index in [`crate::Deck::sections`].
-    pub section: usize,
-    /// Its elements in the deck.
-    pub elements: Vec<usize>,
-}
 
 impl Converter<'_> {
     /// All materials that sections have.
@@ -92,7 +81,7 @@ impl Converter<'_> {
             number(density * units.density()),
             number(modulus * units.stress() / 1e9)
         );
-        let likely: Vec<&str> = super::Units::likelier(density, modulus).map(|units| units.name).collect();
+        let likely: Vec<&str> = Units::likelier(density, modulus).map(|units| units.name).collect();
         if likely.is_empty() {
             text += "; no system of units makes both those of a solid: the file mixes units, as lengths in mm beside a density in kg/m³";
         } else {
@@ -144,7 +133,7 @@ impl Converter<'_> {
             );
         }
         for ((section, reduced), elements) in groups {
-            let pieces = self.pieces(elements);
+            let pieces = self.pieces(&elements);
             let several = pieces.len() > 1;
             for (k, elements) in pieces.into_iter().enumerate() {
                 let own = &self.deck.sections[section].name;
@@ -156,16 +145,16 @@ impl Converter<'_> {
 
     /// The pieces of a section that have nodes at one place but none in common, as tied bodies or bodies in contact have; all of it where
     /// there are none.
-    fn pieces(&self, elements: Vec<usize>) -> Vec<Vec<usize>> {
+    pub fn pieces(&self, elements: &[usize]) -> Vec<Vec<usize>> {
         let deck = self.deck;
         let nodes_of = |element: &usize| deck.elements[*element].nodes.as_slice();
         let lowest = lowest_connected(deck.nodes.len(), elements.iter().map(nodes_of));
         let mut pieces: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-        for element in &elements {
+        for element in elements {
             pieces.entry(lowest[deck.elements[*element].nodes[0]]).or_default().push(*element);
         }
         if pieces.len() == 1 {
-            return vec![elements];
+            return vec![elements.to_vec()];
         }
         let size = deck.nodes.iter().flat_map(|node| node.position).fold(0.0f64, |most, x| most.max(x.abs()));
         // As the check of meshes has it: places to a billionth of the largest coordinate.
@@ -178,7 +167,7 @@ impl Converter<'_> {
         nodes.dedup();
         let touch =
             nodes.into_iter().any(|node| *at.entry(place(node)).or_insert(lowest[node]) != lowest[node]);
-        if touch { pieces.into_values().collect() } else { vec![elements] }
+        if touch { pieces.into_values().collect() } else { vec![elements.to_vec()] }
     }
 
     fn part(&mut self, index: usize, name: &str, reduced: bool, elements: Vec<usize>) {
