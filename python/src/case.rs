@@ -48,6 +48,23 @@ impl Case {
         Self::read(py, folder.join("case.toml"))
     }
 
+    /// The case made of a model of another program in a new folder, and what the user should know of it.
+    #[staticmethod]
+    fn from_deck(
+        py: Python<'_>,
+        file: PathBuf,
+        unit: &str,
+        folder: PathBuf,
+        format: Option<&str>,
+    ) -> PyResult<(Self, Vec<String>)> {
+        let made = py.detach(|| stridor::cli::import_deck(&file, unit, format, &folder));
+        let (_, made) = raised(py, made)?;
+        let unread = made.ledger.rows().filter(|row| row.weight == stridor::decks::Weight::Matters);
+        let unread: Vec<String> = unread.map(|row| format!("Not read: {}: {}", row.what, row.why)).collect();
+        let warnings = made.warnings.iter().cloned().chain(unread).collect();
+        Ok((Self::read(py, folder.join("case.toml"))?, warnings))
+    }
+
     /// The case of TOML text; relative paths start from `folder`.
     #[staticmethod]
     fn parse(py: Python<'_>, text: &str, folder: PathBuf) -> PyResult<Self> {

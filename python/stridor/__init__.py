@@ -9,7 +9,7 @@ units: m, kg, s, N, rad.
 """
 
 from . import _native
-from ._case import Case, Scalar, run
+from ._case import Case, Scalar, import_deck, run
 from ._errors import AnalysisError, CaseWarning, Error, Fault, InputError, MachineError
 from ._model import Contact, Model
 from ._results import Results, open_results
@@ -28,6 +28,7 @@ __all__ = [
     "Model",
     "Results",
     "Scalar",
+    "import_deck",
     "open_results",
     "run",
 ]

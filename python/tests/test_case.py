@@ -113,6 +113,20 @@ def test_templates_are_valid(template: str, tmp_path: Path) -> None:
         stridor.Case.new(tmp_path / "new", template)
 
 
+def test_a_deck_of_another_program_becomes_a_case(tmp_path: Path) -> None:
+    chapter = (Path(__file__).parents[2] / "guide/src/abaqus.md").read_text()
+    deck = chapter.split("```inp,file=rub.inp\n")[1].split("```")[0]
+    (tmp_path / "rub.inp").write_text(deck)
+    case = stridor.import_deck(tmp_path / "rub.inp", "mm", tmp_path / "rub")
+    assert case["contact.Rubbing.friction.mu0"] == 0.5
+    assert (tmp_path / "rub/import.md").exists()
+    with pytest.raises(stridor.InputError, match="Choose another name"):
+        stridor.import_deck(tmp_path / "rub.inp", "mm", tmp_path / "rub")
+    (tmp_path / "rub.inp").write_text(deck.replace("*Elastic", "*Connector Section\n*Elastic"))
+    with pytest.warns(stridor.CaseWarning, match="connectors"):
+        stridor.import_deck(tmp_path / "rub.inp", "mm", tmp_path / "other")
+
+
 def test_a_template_that_is_not_there_is_refused(tmp_path: Path) -> None:
     with pytest.raises(stridor.InputError, match="two-dof"):
         stridor.Case.new(tmp_path / "new", "disk")

@@ -3,7 +3,7 @@
 use super::mesh::refuse_existing;
 use super::output::{Common, SUCCESS, give, say};
 use crate::case::read_case;
-use crate::decks::{self, Converted, Format, Units, convert};
+use crate::decks::{self, Converted, Deck, Format, Units, convert};
 use crate::error::{Error, Result};
 use crate::job::{Prepared, check_case};
 use crate::mesh::to_msh_exactly;
@@ -28,12 +28,7 @@ pub struct ImportOptions {
 
 pub fn run(options: &ImportOptions, common: &Common) -> Result<u8> {
     let folder = &options.out;
-    refuse_existing(folder, "Choose another name, or move it away")?;
-    let units = Units::named(&options.unit)?;
-    let format = options.format.as_deref().map(Format::named).transpose()?;
-    let deck = decks::read(&options.file, format)?;
-    let made = convert(&deck, units)?;
-    write(folder, &made)?;
+    let (deck, made) = import_deck(&options.file, &options.unit, options.format.as_deref(), folder)?;
     let case = folder.join("case.toml");
     let valid = valid(&case);
     if common.json {
@@ -59,6 +54,25 @@ pub fn run(options: &ImportOptions, common: &Common) -> Result<u8> {
         }
     }
     Ok(SUCCESS)
+}
+
+/// Makes a case and a mesh in the new folder `folder` of the model in `file`, whose numbers are in the units called `unit`, as `stridor import` does.
+///
+/// # Errors
+/// Every fault of the file; units or a format that there are not; a folder that is there already, or one that cannot be written.
+pub fn import_deck(
+    file: &Path,
+    unit: &str,
+    format: Option<&str>,
+    folder: &Path,
+) -> Result<(Deck, Converted)> {
+    refuse_existing(folder, "Choose another name, or move it away")?;
+    let units = Units::named(unit)?;
+    let format = format.map(Format::named).transpose()?;
+    let deck = decks::read(file, format)?;
+    let made = convert(&deck, units)?;
+    write(folder, &made)?;
+    Ok((deck, made))
 }
 
 fn write(folder: &Path, made: &Converted) -> Result<()> {

@@ -27,6 +27,7 @@ mod version;
 use crate::error::{Error, Fault, Result};
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 pub use engine::Ranks;
+pub use import::import_deck;
 pub use new::new_case;
 use output::{Common, SUCCESS, complain, give};
 pub use process::{OrExit, process};

@@ -531,3 +531,36 @@ fn an_engine_of_the_other_program_is_a_fault() {
         assert!(!folder.path().join("results").exists());
     }
 }
+
+#[test]
+fn a_wrong_deck_is_refused_with_all_its_faults_and_nothing_is_written() {
+    let chapter =
+        std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("guide/src/abaqus.md")).unwrap();
+    let deck =
+        chapter.split("```inp,file=rub.inp\n").nth(1).and_then(|rest| rest.split("```").next()).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let import = |text: &str, more: &[&str]| {
+        std::fs::write(folder.path().join("rub.inp"), text).unwrap();
+        let output = stridor(folder.path(), &[&["import", "rub.inp", "--out", "rub"], more].concat());
+        (
+            output.status.code(),
+            text(&output.stdout) + &text(&output.stderr),
+            folder.path().join("rub").exists(),
+        )
+    };
+    let wrong = deck
+        .replace("1, 2, 3, 4, 5, 6, 7, 8\n*Solid", "1, 2, 3, 4, 5, 6, 7, 9\n*Solid")
+        .replace("Guided, 1, 2", "Guided, x, 2");
+    let (code, said, written) = import(&wrong, &["--unit", "mm"]);
+    assert!(code == Some(2) && !written, "{said}");
+    for word in ["2 faults", "on node 9", "`x, 2`", "rub.inp:"] {
+        assert!(said.contains(word), "{word}: {said}");
+    }
+    let (code, said, written) = import(deck, &["--unit", "furlong"]);
+    assert!(code == Some(2) && said.contains("mm, t, s (N, MPa)") && !written, "{said}");
+    let (code, said, written) = import(deck, &["--unit", "mm", "--json"]);
+    let summary: serde_json::Value = serde_json::from_str(&said).expect("JSON");
+    assert!(code == Some(0) && written && summary["valid"] == true && summary["nodes"] == 16, "{said}");
+    let (code, said, _) = import(deck, &["--unit", "mm"]);
+    assert!(code == Some(2) && said.contains("something there already"), "{said}");
+}
