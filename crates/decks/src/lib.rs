@@ -1,6 +1,6 @@
 //! Finite-element models of other programs as one description, [`Deck`].
 //!
-//! * [`read`]: reads a file by its name or by what it begins with.
+//! * [`read`]: reads a file by its name; [`read_bytes`] from memory.
 //! * [`Deck`]: nodes, elements, sets, materials, constraints, contacts, loads; plain data in the units of the file.
 //! * [`Ledger`]: what was read in part, or not at all, with its places.
 //!
@@ -17,5 +17,5 @@ pub use deck::{
     Material, Motion, Node, Place, PointMass, Profile, Section, SectionShape, Set, ShellFace, Spring,
     Support, Surface, Tie,
 };
-pub use format::{Format, read};
+pub use format::{Format, read, read_bytes};
 pub use ledger::{Ledger, Unread, Weight};
