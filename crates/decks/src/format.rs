@@ -37,6 +37,11 @@ impl Format {
         self.row().name
     }
 
+    /// All formats.
+    pub fn all() -> impl Iterator<Item = Format> {
+        FORMATS.iter().map(|row| row.format)
+    }
+
     /// The names of all.
     pub fn names() -> impl Iterator<Item = &'static str> {
         FORMATS.iter().map(|row| row.name)
@@ -86,9 +91,20 @@ impl Format {
 /// Every fault of the file and of those it includes: what cannot be read as what it should be, and what is named but not there.
 pub fn read(path: &Path, format: Option<Format>) -> Result<Deck> {
     let format = format.map_or_else(|| Format::of_path(path), Ok)?;
-    let mut files = Files::default();
+    read_with(path, format, Files::default())
+}
+
+/// Reads the model in `bytes`, which faults call `name`. It may not include files.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_bytes(name: &str, bytes: &[u8], format: Format) -> Result<Deck> {
+    read_with(Path::new(name), format, Files::of_bytes(bytes))
+}
+
+fn read_with(path: &Path, format: Format, mut files: Files) -> Result<Deck> {
     let mut deck = (format.row().read)(path, &mut files)?;
-    let Files { paths, faults } = files;
+    let Files { paths, faults, .. } = files;
     faults.into_result(())?;
     deck.files = paths;
     Ok(deck)

@@ -1,6 +1,6 @@
 //! Finite-element models of other programs as one description, [`Deck`].
 //!
-//! * [`read`]: reads a file by its name or by what it begins with.
+//! * [`read`]: reads a file by its name; [`read_bytes`] from memory.
 //! * [`Deck`]: nodes, elements, sets, materials, constraints, contacts, loads; plain data in the units of the file.
 //! * [`convert`]: a mesh, a case and a page of what was read.
 //! * [`Ledger`]: what was read in part, or not at all, with its places.
@@ -20,5 +20,5 @@ pub use deck::{
     Material, Motion, Node, Place, PointMass, Profile, Section, SectionShape, Set, ShellFace, Spring,
     Support, Surface, Tie,
 };
-pub use format::{Format, read};
+pub use format::{Format, read, read_bytes};
 pub use ledger::{Ledger, Unread, Weight};

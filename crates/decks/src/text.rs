@@ -12,20 +12,32 @@ pub(crate) struct Files {
     pub paths: Vec<PathBuf>,
     /// What is wrong.
     pub faults: Faults,
+    /// The only file that there is, where it is in memory.
+    memory: Option<Vec<u8>>,
 }
 
 /// The most faults that are kept: a file of another kind has one in every line.
 const MOST_FAULTS: usize = 1000;
 
 impl Files {
+    /// A file in memory, by any name, that includes no others.
+    pub fn of_bytes(bytes: &[u8]) -> Files {
+        Files { memory: Some(bytes.to_vec()), ..Files::default() }
+    }
+
     /// The text of a file, whose bytes need not be UTF-8 where they are a comment, and its number.
     ///
     /// # Errors
     /// A file that cannot be read.
     pub fn read(&mut self, path: &Path) -> Result<(u32, String)> {
-        let bytes = read_bytes(path, "a model of another program")?;
-        let number = self.paths.len() as u32;
-        self.paths.push(path.to_path_buf());
+        let bytes = match self.memory.as_mut() {
+            Some(_) if !self.paths.is_empty() => {
+                let fault = Fault::new(path.display().to_string(), "no file there", "one file in memory");
+                return Err(Error::input(fault));
+            }
+            Some(bytes) => std::mem::take(bytes),
+            None => read_bytes(path, "a model of another program")?,
+        };
         let text = plain(&bytes);
         if let Some(at) = text.iter().position(|byte| *byte == 0) {
             return Err(Error::input(not_text(&text, at, &path.display().to_string())));
@@ -35,6 +47,8 @@ impl Files {
             // Latin-1: every byte is the character of its number.
             Err(_) => text.iter().map(|byte| char::from(*byte)).collect(),
         };
+        let number = self.paths.len() as u32;
+        self.paths.push(path.to_path_buf());
         Ok((number, text))
     }
 

@@ -2,14 +2,16 @@
 
 use crate::deck::Place;
 use crate::text::Files;
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
-use stridor_base::error::{Error, Fault, Result};
+use std::rc::Rc;
+use stridor_base::error::{Error, Result};
 
 /// An input file with all that it includes.
 #[derive(Debug, Default)]
 pub(super) struct Blocks {
     /// Texts of the files.
-    texts: Vec<String>,
+    texts: Vec<Rc<str>>,
     /// The blocks in their order.
     pub blocks: Vec<Block>,
     /// Lines before the first keyword.
@@ -23,8 +25,8 @@ pub(super) struct Block {
     pub keyword: String,
     /// Options in their order.
     pub options: Vec<BlockOption>,
-    /// Lines of data, those of comments and blank ones left out.
-    lines: Vec<Line>,
+    /// Lines of data, those of comments and blank ones among them.
+    spans: Vec<Span>,
     /// Where the keyword stands.
     pub place: Place,
 }
@@ -38,18 +40,22 @@ pub(super) struct BlockOption {
     pub value: String,
 }
 
-/// A line of data.
+/// Lines of a file that follow each other.
 #[derive(Debug, Clone, Copy)]
-struct Line {
+struct Span {
+    /// The first of them.
     place: Place,
+    /// Bytes of the text.
     start: usize,
     end: usize,
 }
 
-/// The most files that are read: each may include others.
+/// The most files that are included, one that is included again among them.
 const MOST_FILES: usize = 10_000;
-/// The most bytes of all of them: a file may be included many times.
-const MOST_BYTES: usize = 16 << 30;
+/// The deepest that files are included in each other.
+const MOST_DEPTH: usize = 64;
+/// The most bytes that are read again because a file is included again \[byte\], beside as many as there are.
+const MOST_AGAIN: usize = 1 << 20;
 
 impl Block {
     /// The value of an option.
@@ -62,9 +68,11 @@ impl Block {
         self.options.iter().any(|option| option.name == name)
     }
 
-    /// The number of its lines of data.
-    pub fn n_lines(&self) -> usize {
-        self.lines.len()
+    /// The bytes of its lines.
+    pub fn n_bytes(&self) -> usize {
+        let options = self.options.iter().map(|option| 2 + option.name.len() + option.value.len());
+        let lines = self.spans.iter().map(|span| span.end - span.start);
+        2 + self.keyword.len() + options.chain(lines).sum::<usize>()
     }
 }
 
@@ -74,41 +82,70 @@ impl Blocks {
     /// # Errors
     /// A file that cannot be read.
     pub fn read(path: &Path, files: &mut Files) -> Result<Blocks> {
-        let mut reader = Reader { all: Blocks::default(), bytes: 0, open: Vec::new(), complete: true };
-        reader.file(path, files)?;
+        let mut reader = Reader {
+            all: Blocks::default(),
+            known: HashMap::new(),
+            included: 0,
+            again: 0,
+            open: Vec::new(),
+            complete: true,
+        };
+        let number = reader.number_of(path, files)?;
+        reader.file(number, files)?;
         Ok(reader.all)
     }
 
     /// The lines of data of a block with their places.
     pub fn lines<'a>(&'a self, block: &'a Block) -> impl Iterator<Item = (Place, &'a str)> + Clone {
-        block
-            .lines
-            .iter()
-            .map(|line| (line.place, &self.texts[line.place.file as usize][line.start..line.end]))
+        block.spans.iter().flat_map(|span| {
+            let Place { file, line } = span.place;
+            let lines = self.texts[file as usize][span.start..span.end].split('\n').map(str::trim);
+            let placed =
+                lines.enumerate().map(move |(k, text)| (Place { file, line: line + k as u32 }, text));
+            placed.filter(|(_, text)| !text.is_empty() && !text.starts_with("**"))
+        })
+    }
+
+    /// The bytes of all files.
+    pub fn n_bytes(&self) -> usize {
+        self.texts.iter().map(|text| text.len()).sum()
     }
 }
 
 struct Reader {
     all: Blocks,
-    bytes: usize,
-    /// The files that are being read, from the first to the innermost.
-    open: Vec<PathBuf>,
+    /// Numbers of the files that were read, by their whole paths.
+    known: HashMap<PathBuf, u32>,
+    /// How many files were included.
+    included: usize,
+    /// Bytes of files that were included again.
+    again: usize,
+    /// Numbers of the files that are being read, from the first to the innermost.
+    open: Vec<u32>,
     /// Whether the last line of options does not go on in the next one.
     complete: bool,
 }
 
 impl Reader {
-    fn file(&mut self, path: &Path, files: &mut Files) -> Result<()> {
-        let (number, text) = files.read(path)?;
-        self.bytes += text.len();
-        if number as usize >= MOST_FILES || self.bytes > MOST_BYTES {
-            let found = format!("{} files of {} bytes in all", number + 1, self.bytes);
-            let expected = format!("at most {MOST_FILES} files and {} GiB", MOST_BYTES >> 30);
-            return Err(Error::input(Fault::new(path.display().to_string(), found, expected)));
+    /// The number of a file, which is read if it is a new one.
+    fn number_of(&mut self, path: &Path, files: &mut Files) -> Result<u32> {
+        let whole = path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
+        if let Some(number) = self.known.get(&whole) {
+            self.again += self.all.texts[*number as usize].len();
+            return Ok(*number);
         }
-        self.open.push(path.canonicalize().unwrap_or_else(|_| path.to_path_buf()));
-        self.all.texts.push(String::new());
+        let (number, text) = files.read(path)?;
+        self.all.texts.push(text.into());
+        self.known.insert(whole, number);
+        Ok(number)
+    }
+
+    fn file(&mut self, number: u32, files: &mut Files) -> Result<()> {
+        self.open.push(number);
+        let text = self.all.texts[number as usize].clone();
         let mut start = 0;
+        // Whether the last block goes on with the next line of data.
+        let mut goes_on = false;
         for (line, whole) in text.split_inclusive('\n').enumerate() {
             let begin = start;
             start += whole.len();
@@ -117,67 +154,89 @@ impl Reader {
             if trimmed.is_empty() || trimmed.starts_with("**") {
                 continue;
             }
-            if !self.complete {
-                if let Some(block) = self.all.blocks.last_mut() {
-                    block.options.extend(options(trimmed));
-                }
-                self.complete = !trimmed.ends_with(',');
-            } else if let Some(words) = trimmed.strip_prefix('*') {
+            if let Some(words) = trimmed.strip_prefix('*') {
                 let mut parts = split(words);
                 let keyword = capitals(parts.next().unwrap_or_default());
-                let block =
-                    Block { keyword, options: parts.filter_map(option).collect(), lines: Vec::new(), place };
+                let options = parts.filter_map(option).collect();
+                self.all.blocks.push(Block { keyword, options, spans: Vec::new(), place });
                 self.complete = !trimmed.ends_with(',');
-                self.all.blocks.push(block);
+                goes_on = false;
+            } else if !self.complete {
+                if let Some(block) = self.all.blocks.last_mut() {
+                    block.options.extend(split(trimmed).filter_map(option));
+                }
+                self.complete = !trimmed.ends_with(',');
             } else {
-                let from = begin + whole.len() - whole.trim_start().len();
-                let line = Line { place, start: from, end: from + trimmed.len() };
                 match self.all.blocks.last_mut() {
-                    Some(block) => block.lines.push(line),
+                    Some(Block { spans, .. }) => match spans.last_mut().filter(|_| goes_on) {
+                        Some(span) => span.end = start,
+                        None => spans.push(Span { place, start: begin, end: start }),
+                    },
                     // What other programs write above it.
                     None => self.all.before.push(place),
                 }
+                goes_on = true;
             }
             if self.complete && self.all.blocks.last().is_some_and(|block| block.keyword == "INCLUDE") {
                 // What stands in the file belongs to the block before, as if it stood here.
                 let include = self.all.blocks.pop().expect("there is one");
-                self.include(&include, path, files)?;
+                self.include(&include, number, files)?;
+                goes_on = false;
             }
             if files.too_many() {
                 break;
             }
         }
-        self.all.texts[number as usize] = text;
         self.complete = true;
         self.open.pop();
         Ok(())
     }
 
-    fn include(&mut self, block: &Block, from: &Path, files: &mut Files) -> Result<()> {
+    fn include(&mut self, block: &Block, from: u32, files: &mut Files) -> Result<()> {
         let Some(name) = block.option("INPUT").filter(|name| !name.is_empty()) else {
             files.fault(block.place, "*INCLUDE without a file", "*INCLUDE, INPUT=file");
             return Ok(());
         };
-        let path = from.parent().unwrap_or(Path::new("")).join(name.replace('\\', "/"));
-        let whole = path.canonicalize().unwrap_or_else(|_| path.clone());
-        if self.open.contains(&whole) {
-            files.fault(
-                block.place,
-                format!("*INCLUDE of \"{name}\", which is being read"),
-                "files that do not include themselves",
-            );
+        // Beside the file that includes it, or beside the first one, where the programs look.
+        let beside = |number: u32| {
+            let folder = files.paths[number as usize].parent().unwrap_or(Path::new(""));
+            folder.join(name.replace('\\', "/"))
+        };
+        let (near, first) = (beside(from), beside(0));
+        let path = if !near.exists() && first.exists() { first } else { near };
+        let number = match self.number_of(&path, files) {
+            Ok(number) => number,
+            Err(Error::Input(faults)) => {
+                let found = faults.0.first().map_or("", |fault| &fault.found);
+                let found = format!("*INCLUDE of \"{name}\": {found}");
+                files.fault(block.place, found, "a text file beside this one");
+                return Ok(());
+            }
+            Err(error) => return Err(error),
+        };
+        if self.open.contains(&number) {
+            let found = format!("*INCLUDE of \"{name}\", which is being read");
+            files.fault(block.place, found, "files that do not include themselves");
             return Ok(());
         }
-        match self.file(&path, files) {
-            Ok(()) => Ok(()),
-            Err(Error::Input(faults)) if !path.exists() => {
-                let found =
-                    format!("*INCLUDE of \"{name}\": {}", faults.0.first().map_or("", |fault| &fault.found));
-                files.fault(block.place, found, "a file beside this one");
-                Ok(())
-            }
-            Err(error) => Err(error),
+        self.included += 1;
+        let bytes = self.all.n_bytes();
+        let too_many = [
+            (self.included > MOST_FILES, format!("{} files that are included", self.included)),
+            (self.open.len() >= MOST_DEPTH, format!("files included in each other {MOST_DEPTH} deep")),
+            (
+                self.again > bytes + MOST_AGAIN,
+                format!("{bytes} bytes, and {} more of files that are included again", self.again),
+            ),
+        ];
+        if let Some((_, found)) = too_many.into_iter().find(|(is, _)| *is) {
+            let expected = format!(
+                "at most {MOST_FILES} files, less than {MOST_DEPTH} deep, and few of them more than once"
+            );
+            files.fault(block.place, found, expected);
+            return Err(Error::Input(std::mem::take(&mut files.faults)));
         }
+        self.file(number, files)
     }
 }
 
@@ -189,10 +248,6 @@ pub(super) fn split(text: &str) -> impl Iterator<Item = &str> {
         c == ',' && !quoted
     })
     .map(str::trim)
-}
-
-fn options(text: &str) -> impl Iterator<Item = BlockOption> {
-    split(text).filter_map(option)
 }
 
 fn option(text: &str) -> Option<BlockOption> {

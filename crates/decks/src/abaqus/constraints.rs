@@ -1,10 +1,9 @@
-//! *BOUNDARY, *TRANSFORM, *EQUATION, *MPC, *TIE, *COUPLING, *RIGID BODY.
+//! *BOUNDARY, *EQUATION, *MPC, *TIE.
 
-use super::space::Item;
 use super::{Found, Reader, Row, blocks};
 use crate::deck::{Coupling, CouplingKind, Equation, Frame, Place, Support, Tie};
 use crate::ledger::Weight;
-use std::collections::BTreeMap;
+use std::collections::HashMap;
 
 /// Names for what *BOUNDARY holds.
 const HELD: [(&str, [bool; 6]); 9] = [
@@ -59,29 +58,37 @@ impl Reader {
             );
             return None;
         };
-        let value = self.number(row, 3)?;
-        if value != 0.0 {
-            let why = "a displacement that is not zero is taken as held";
-            self.deck.ledger.note(Weight::Perhaps, "*BOUNDARY", why, row.place);
+        if last < first {
+            let words = format!("degrees of freedom from {first} to {last}");
+            self.files.fault(row.place, words, "first and last degree of freedom");
+            return None;
         }
-        if last > 6 {
-            let why = "degrees of freedom above 6 (temperature, pressure) are not read";
+        let value = self.number(row, 3)?;
+        // Networks of CalculiX have their temperature at 0.
+        if last > 6 || first == 0 {
+            let why = "degrees of freedom but 1 to 6 (temperature, pressure) are not read";
             self.deck.ledger.note(Weight::Nothing, "*BOUNDARY", why, row.place);
         }
         let mut held = [false; 6];
         (first.max(1)..=last.min(6)).for_each(|dof| held[dof as usize - 1] = true);
+        if value != 0.0 && held.contains(&true) {
+            let why = "a displacement that is not zero is taken as held";
+            self.deck.ledger.note(Weight::Perhaps, "*BOUNDARY", why, row.place);
+        }
         held.contains(&true).then_some(held)
     }
 
     /// Adds a support of nodes, apart by their frames; lines that follow each other and hold more of the same nodes are one.
     fn support(&mut self, name: Option<String>, nodes: Vec<usize>, held: [bool; 6], place: Place) {
         let mut apart: Vec<(Frame, Vec<usize>)> = Vec::new();
+        let mut known = HashMap::new();
         for node in nodes {
-            let frame = self.frames.get(&node).copied().unwrap_or(Frame::Global);
-            match apart.iter_mut().find(|(other, _)| *other == frame) {
-                Some((_, nodes)) => nodes.push(node),
-                None => apart.push((frame, vec![node])),
+            let frame = self.frame_of.get(&node).copied();
+            let at = *known.entry(frame).or_insert(apart.len());
+            if at == apart.len() {
+                apart.push((frame.map_or(Frame::Global, |frame| self.frames[frame]), Vec::new()));
             }
+            apart[at].1.push(node);
         }
         for (frame, nodes) in apart {
             let same = |last: &&mut Support| last.frame == frame && last.nodes == nodes;
@@ -97,34 +104,6 @@ impl Reader {
     pub fn set_words(&self, space: usize, name: &str) -> String {
         let own = self.spaces[space].node_sets.get(name).map(|set| set.name.clone());
         own.unwrap_or_else(|| blocks::unquoted(name).to_string())
-    }
-
-    /// *TRANSFORM: two points of a frame for the degrees of freedom of a set.
-    pub fn transform(&mut self, space: usize, found: Found<'_>) {
-        let Some(name) = found.option("NSET") else {
-            self.files.fault(found.place(), "*TRANSFORM without a set", "*TRANSFORM, NSET=…");
-            return;
-        };
-        let nodes = self.nodes_of(space, name, found.place()).unwrap_or_default();
-        let Some(row) = found.rows().next() else {
-            self.files.fault(found.place(), "*TRANSFORM without data", "two points");
-            return;
-        };
-        let Some([ax, ay, az, bx, by, bz]) = self.numbers::<6>(&row, 0) else { return };
-        let placement = self.spaces[space].placement;
-        let turn = |axis: [f64; 3]| placement.map_or(axis, |placement| placement.turn(axis));
-        let place = |point: [f64; 3]| placement.map_or(point, |placement| placement.place(point));
-        let frame = match found.option("TYPE").unwrap_or("R").to_uppercase().as_str() {
-            "C" => Some(Frame::Cylindrical([place([ax, ay, az]), turn([bx - ax, by - ay, bz - az])])),
-            "S" => None,
-            _ => turned([turn([ax, ay, az]), turn([bx, by, bz])]).map(Frame::Turned),
-        };
-        let Some(frame) = frame else {
-            let why = "a frame on a sphere, or of points in one line, is not read";
-            self.deck.ledger.note(Weight::Matters, "*TRANSFORM", why, found.place());
-            return;
-        };
-        self.frames.extend(nodes.into_iter().map(|node| (node, frame)));
     }
 
     /// *EQUATION: the number of terms; node, degree of freedom, factor of each, up to four a line.
@@ -164,7 +143,10 @@ impl Reader {
                     terms.push((nodes, dof.saturating_sub(1), factor));
                 }
             }
-            if displacements {
+            if terms.len() as u64 > count {
+                let words = format!("{} terms of an equation of {count}", terms.len());
+                self.files.fault(head.place, words, "as many as the first line says");
+            } else if displacements {
                 self.equations(terms, head.place);
             } else {
                 let why = "equations of temperatures, pressures or flows are not read";
@@ -184,11 +166,23 @@ impl Reader {
             );
             return;
         }
+        if !self.may_name(n.saturating_mul(terms.len()), place) {
+            return;
+        }
         for k in 0..n {
             let term =
                 |(nodes, dof, factor): &(Vec<usize>, u8, f64)| (nodes[k.min(nodes.len() - 1)], *dof, *factor);
-            self.deck.equations.push(Equation { terms: terms.iter().map(term).collect(), place });
+            let terms = terms.iter().map(term).flat_map(|term| self.term(term)).collect();
+            self.deck.equations.push(Equation { terms, place });
         }
+    }
+
+    /// A term of an equation, its degree of freedom in the frame of its node, as terms in that of the coordinates.
+    fn term(&self, (node, dof, factor): (usize, u8, f64)) -> Vec<(usize, u8, f64)> {
+        let Some(directions) = self.directions_at(node) else { return vec![(node, dof, factor)] };
+        let direction = directions[usize::from(dof % 3)];
+        let component = |k: u8| (node, dof / 3 * 3 + k, factor * direction[usize::from(k)]);
+        (0..3).map(component).filter(|(.., factor)| *factor != 0.0).collect()
     }
 
     /// *MPC: its kind and nodes.
@@ -205,7 +199,17 @@ impl Reader {
             else {
                 continue;
             };
-            if kind == "PIN" {
+            if kind != "BEAM" {
+                let position = |node: usize| self.deck.nodes[node].position;
+                let apart = |node: &usize| position(*node) != position(reference);
+                if kind == "TIE" && !nodes.iter().any(apart) {
+                    self.rigid(kind, reference, nodes, row.place);
+                    continue;
+                }
+                if kind == "TIE" {
+                    let why = "the rotations of nodes that are apart are not tied, their displacements are";
+                    self.deck.ledger.note(Weight::Matters, "*MPC, TIE", why, row.place);
+                }
                 for node in nodes {
                     let equation = |dof: u8| Equation {
                         terms: vec![(node, dof, 1.0), (reference, dof, -1.0)],
@@ -215,20 +219,25 @@ impl Reader {
                 }
                 continue;
             }
-            let of = None;
-            self.deck.couplings.push(Coupling {
-                name: kind,
-                reference,
-                nodes,
-                of,
-                kind: CouplingKind::Rigid,
-                place: row.place,
-            });
+            self.rigid(kind, reference, nodes, row.place);
         }
+    }
+
+    fn rigid(&mut self, name: String, reference: usize, nodes: Vec<usize>, place: Place) {
+        let kind = CouplingKind::Rigid;
+        self.deck.couplings.push(Coupling { name, reference, nodes, of: None, kind, place });
     }
 
     /// *TIE: slave and master.
     pub fn tie(&mut self, space: usize, found: Found<'_>) {
+        if let Some(option) = ["CYCLICSYMMETRY", "MULTISTAGE", "FLUIDPERIODIC", "FLUIDCYCLIC"]
+            .into_iter()
+            .find(|name| found.block.has(name))
+        {
+            let why = "surfaces that repeat each other are not read: the sector alone is the model";
+            self.deck.ledger.note(Weight::Matters, format!("*TIE, {option}"), why, found.place());
+            return;
+        }
         let tolerance = found.option("POSITIONTOLERANCE");
         let within =
             tolerance.and_then(|cell| self.number(&Row { place: found.place(), cells: vec![cell] }, 0));
@@ -240,176 +249,4 @@ impl Reader {
             self.deck.ties.push(Tie { name: name.clone(), slave, master, within, place: row.place });
         }
     }
-
-    /// The nodes of a surface or of a set of nodes.
-    fn surface_nodes(&mut self, space: usize, name: &str, place: Place) -> Vec<usize> {
-        let Some(surface) = self.surface_called(space, name).cloned() else {
-            return self.nodes_of(space, name, place).unwrap_or_default();
-        };
-        let mut nodes = surface.nodes;
-        for (element, side) in surface.faces {
-            let element = &self.deck.elements[element];
-            let (_, of_side) = element.kind.table().sides[side];
-            nodes.extend(of_side.iter().map(|node| element.nodes[usize::from(*node)]));
-        }
-        nodes.extend(surface.shells.iter().flat_map(|(element, _)| &self.deck.elements[*element].nodes));
-        nodes.sort_unstable();
-        nodes.dedup();
-        nodes
-    }
-
-    /// *COUPLING: a node and a surface; *KINEMATIC or *DISTRIBUTING below says how.
-    pub fn coupling(&mut self, space: usize, found: Found<'_>) {
-        let (Some(node), Some(surface)) = (found.option("REFNODE"), found.option("SURFACE")) else {
-            self.files.fault(found.place(), "*COUPLING without REF NODE or SURFACE", "both");
-            return;
-        };
-        let Some(reference) = self.node_of(space, node, found.place()) else { return };
-        let mut nodes = self.surface_nodes(space, surface, found.place());
-        nodes.retain(|node| *node != reference);
-        let name = found.option("CONSTRAINTNAME").unwrap_or_default().to_string();
-        let of = Some(blocks::unquoted(surface).to_string());
-        self.deck.couplings.push(Coupling {
-            name,
-            reference,
-            nodes,
-            of,
-            kind: CouplingKind::Rigid,
-            place: found.place(),
-        });
-    }
-
-    /// *KINEMATIC: degrees of freedom that are coupled; all when there are none.
-    pub fn kinematic(&mut self, _: usize, found: Found<'_>) {
-        self.all_coupled(found);
-    }
-
-    /// *DISTRIBUTING: as *KINEMATIC, on average.
-    pub fn distributing(&mut self, _: usize, found: Found<'_>) {
-        self.all_coupled(found);
-        if let Some(last) = self.deck.couplings.last_mut() {
-            last.kind = CouplingKind::Averaging;
-        }
-    }
-
-    fn all_coupled(&mut self, found: Found<'_>) {
-        let mut coupled = [false; 6];
-        let mut some = false;
-        for row in found.rows() {
-            let dof = |at: usize| row.cell(at).trim_end_matches('.').parse::<usize>().ok();
-            let Some(first) = dof(0) else { continue };
-            let last = dof(1).unwrap_or(first);
-            (first.max(1)..=last.min(6)).for_each(|k| coupled[k - 1] = true);
-            some = true;
-        }
-        // Nodes of solids have no rotations.
-        if some && coupled[..3] != [true; 3] {
-            let why = "a coupling of some displacements is read as one of all";
-            self.deck.ledger.note(Weight::Matters, format!("*{}", found.block.keyword), why, found.place());
-        }
-    }
-
-    /// *KINEMATIC COUPLING, REF NODE: nodes and their degrees of freedom.
-    pub fn kinematic_coupling(&mut self, space: usize, found: Found<'_>) {
-        let Some(node) = found.option("REFNODE") else {
-            self.files.fault(found.place(), "*KINEMATIC COUPLING without REF NODE", "REF NODE=…");
-            return;
-        };
-        let Some(reference) = self.node_of(space, node, found.place()) else { return };
-        let mut nodes = Vec::new();
-        for row in found.rows() {
-            nodes.extend(self.nodes_of(space, row.cell(0), row.place).unwrap_or_default());
-        }
-        let kind = CouplingKind::Rigid;
-        self.deck.couplings.push(Coupling {
-            name: String::new(),
-            reference,
-            nodes,
-            of: None,
-            kind,
-            place: found.place(),
-        });
-    }
-
-    /// *DISTRIBUTING COUPLING, ELSET: nodes with weights; the set has one DCOUP3D, whose node is the one that follows.
-    pub fn distributing_coupling(&mut self, space: usize, found: Found<'_>) {
-        let items = found
-            .option("ELSET")
-            .and_then(|name| self.items_of(space, name, found.place()))
-            .unwrap_or_default();
-        let [Item::Point(point)] = items.as_slice() else {
-            self.files.fault(
-                found.place(),
-                "*DISTRIBUTING COUPLING",
-                "a set with one element of type DCOUP3D",
-            );
-            return;
-        };
-        let reference = self.points[*point].nodes[0];
-        let (mut nodes, mut weights) = (Vec::new(), BTreeMap::new());
-        for row in found.rows() {
-            nodes.extend(self.nodes_of(space, row.cell(0), row.place).unwrap_or_default());
-            if let Some(weight) = self.number(&row, 1) {
-                weights.insert(weight.to_bits(), ());
-            }
-        }
-        if weights.len() > 1 {
-            let why = "weights of the nodes are not read; areas are";
-            self.deck.ledger.note(Weight::Perhaps, "*DISTRIBUTING COUPLING", why, found.place());
-        }
-        let kind = CouplingKind::Averaging;
-        self.deck.couplings.push(Coupling {
-            name: String::new(),
-            reference,
-            nodes,
-            of: None,
-            kind,
-            place: found.place(),
-        });
-    }
-
-    /// *RIGID BODY: elements or nodes that follow a node.
-    pub fn rigid_body(&mut self, space: usize, found: Found<'_>) {
-        let Some(node) = found.option("REFNODE") else {
-            let why = "a rigid body without a reference node is not read";
-            self.deck.ledger.note(Weight::Matters, "*RIGID BODY", why, found.place());
-            return;
-        };
-        let Some(reference) = self.node_of(space, node, found.place()) else { return };
-        let mut nodes = Vec::new();
-        for option in ["NSET", "TIENSET", "PINNSET"] {
-            let Some(name) = found.option(option) else { continue };
-            nodes.extend(self.nodes_of(space, name, found.place()).unwrap_or_default());
-        }
-        if let Some(name) = found.option("ELSET") {
-            let items = self.items_of(space, name, found.place()).unwrap_or_default();
-            nodes.extend(items.into_iter().flat_map(|item| self.nodes_of_item(item)));
-        }
-        nodes.sort_unstable();
-        nodes.dedup();
-        nodes.retain(|node| *node != reference);
-        let kind = CouplingKind::Rigid;
-        self.deck.couplings.push(Coupling {
-            name: String::new(),
-            reference,
-            nodes,
-            of: None,
-            kind,
-            place: found.place(),
-        });
-    }
-}
-
-/// Unit vectors: the first along a, the third across the plane of a and b; none where these are in one line.
-fn turned([a, b]: [[f64; 3]; 2]) -> Option<[[f64; 3]; 3]> {
-    let cross = |u: [f64; 3], v: [f64; 3]| {
-        [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
-    };
-    let unit = |v: [f64; 3]| {
-        let length = v.iter().map(|x| x * x).sum::<f64>().sqrt();
-        (length > 0.0).then(|| v.map(|x| x / length))
-    };
-    let first = unit(a)?;
-    let third = unit(cross(a, b))?;
-    Some([first, cross(third, first), third])
 }

@@ -46,15 +46,16 @@ const fn keyword(
 /// The table.
 #[rustfmt::skip]
 const KEYWORDS: &[Keyword] = &[
-    keyword("BEAM GENERAL SECTION", Rest, Reader::beam_section, &["ELSET", "MATERIAL", "SECTION"], &["POISSON", "DENSITY"]),
+    keyword("BEAM GENERAL SECTION", Rest, Reader::beam_section, &["ELSET", "MATERIAL", "SECTION", "DENSITY"], &["POISSON"]),
     keyword("BEAM SECTION", Rest, Reader::beam_section, &["ELSET", "MATERIAL", "SECTION"], &["TEMPERATURE", "POISSON"]),
     keyword("BOUNDARY", Rest, Reader::boundary, &["OP"], &["FIXED", "AMPLITUDE"]),
+    keyword("CHANGE FRICTION", Rest, Reader::change_friction, &["INTERACTION"], &[]),
     keyword("CLOAD", Rest, Reader::concentrated, &["OP"], &["AMPLITUDE"]),
     keyword("COMPLEX FREQUENCY", Rest, Reader::complex_frequency, &[], &["FRICTIONDAMPING", "CORIOLIS", "NORMALIZATION"]),
     keyword("CONTACT PAIR", Rest, Reader::contact_pair, &["INTERACTION", "ADJUST", "TIED"], &["TYPE", "SMALLSLIDING", "SLAVE", "MECHANICALCONSTRAINT", "EXTENSIONZONE", "NAME", "CPSET"]),
     keyword("COUPLING", Rest, Reader::coupling, &["REFNODE", "SURFACE", "CONSTRAINTNAME"], &[]),
     keyword("DAMPING", Rest, Reader::damping, &["ALPHA", "BETA", "STRUCTURAL"], &[]),
-    keyword("DASHPOT", Rest, Reader::dashpot, &["ELSET"], &[]),
+    keyword("DASHPOT", Rest, Reader::dashpot, &["ELSET", "ORIENTATION"], &[]),
     keyword("DENSITY", Rest, Reader::density, &[], &["DEPENDENCIES"]),
     keyword("DISTRIBUTING", Rest, Reader::distributing, &[], &["COUPLING", "WEIGHTINGMETHOD"]),
     keyword("DISTRIBUTING COUPLING", Rest, Reader::distributing_coupling, &["ELSET"], &[]),
@@ -66,28 +67,28 @@ const KEYWORDS: &[Keyword] = &[
     keyword("END STEP", Rest, Reader::end_step, &[], &[]),
     keyword("EQUATION", Rest, Reader::equation, &["REMOVE"], &[]),
     keyword("FREQUENCY", Rest, Reader::frequency, &[], &["STORAGE", "SOLVER", "EIGENSOLVER", "NORMALIZATION", "ACOUSTICCOUPLING", "SIM", "RESIDUALMODES"]),
-    keyword("FRICTION", Rest, Reader::friction, &["ROUGH", "NONE"], &["SLIPTOLERANCE", "ELASTICSLIP", "TAUMAX"]),
+    keyword("FRICTION", Rest, Reader::friction, &["ROUGH", "NONE", "EXPONENTIALDECAY"], &["SLIPTOLERANCE", "ELASTICSLIP", "TAUMAX"]),
     keyword("HEADING", Rest, Reader::heading, &[], &[]),
     keyword("KINEMATIC", Rest, Reader::kinematic, &[], &[]),
     keyword("KINEMATIC COUPLING", Rest, Reader::kinematic_coupling, &["REFNODE"], &[]),
     keyword("MASS", Rest, Reader::mass, &["ELSET"], &[]),
     keyword("MATERIAL", Rest, Reader::material, &["NAME"], &[]),
-    keyword("MOTION", Rest, Reader::motion, &["ROTATION"], &[]),
+    keyword("MOTION", Rest, Reader::motion, &["ROTATION", "TYPE", "DEFINITION"], &["AMPLITUDE"]),
     keyword("MPC", Rest, Reader::mpc, &[], &[]),
     keyword("NODE", Nodes, Reader::nodes, &["NSET", "SYSTEM"], &[]),
-    keyword("NSET", Sets, Reader::node_set, &["NSET", "ELSET", "GENERATE", "INSTANCE", "INTERNAL"], &["UNSORTED"]),
-    keyword("ORIENTATION", Rest, Reader::orientation, &["NAME", "SYSTEM"], &["DEFINITION", "LOCALDIRECTIONS"]),
-    keyword("RIGID BODY", Rest, Reader::rigid_body, &["REFNODE", "ELSET", "NSET", "TIENSET", "PINNSET"], &["ROTNODE"]),
+    keyword("NSET", Sets, Reader::node_set, &["NSET", "ELSET", "GENERATE", "INSTANCE", "INTERNAL", "UNSORTED"], &[]),
+    keyword("ORIENTATION", Surfaces, Reader::orientation, &["NAME", "SYSTEM"], &["DEFINITION", "LOCALDIRECTIONS"]),
+    keyword("RIGID BODY", Rest, Reader::rigid_body, &["REFNODE", "ELSET", "NSET", "TIENSET", "PINNSET", "ROTNODE"], &[]),
     keyword("ROTARY INERTIA", Rest, Reader::rotary_inertia, &["ELSET"], &[]),
     keyword("SHELL SECTION", Rest, Reader::shell_section, &["ELSET", "MATERIAL", "ORIENTATION", "COMPOSITE"], &["SECTIONINTEGRATION"]),
     keyword("SOLID SECTION", Rest, Reader::solid_section, &["ELSET", "MATERIAL", "ORIENTATION", "COMPOSITE"], &["CONTROLS"]),
-    keyword("SPRING", Rest, Reader::spring, &["ELSET", "NONLINEAR"], &[]),
+    keyword("SPRING", Rest, Reader::spring, &["ELSET", "NONLINEAR", "ORIENTATION"], &[]),
     keyword("STEP", Rest, Reader::begin_step, &[], &["NAME", "NLGEOM", "PERTURBATION", "INC", "UNSYMM", "AMPLITUDE"]),
     keyword("SURFACE", Surfaces, Reader::surface, &["NAME", "TYPE", "COMBINE", "INTERNAL"], &[]),
     keyword("SURFACE BEHAVIOR", Rest, Reader::behaviour, &["PRESSURE-OVERCLOSURE"], &["AUGMENTEDLAGRANGE", "PENALTY"]),
     keyword("SURFACE INTERACTION", Rest, Reader::interaction, &["NAME"], &["UNSYMM"]),
-    keyword("TIE", Rest, Reader::tie, &["NAME", "POSITIONTOLERANCE"], &["ADJUST", "NOROTATION", "TYPE"]),
-    keyword("TRANSFORM", Rest, Reader::transform, &["NSET", "TYPE"], &[]),
+    keyword("TIE", Rest, Reader::tie, &["NAME", "POSITIONTOLERANCE", "CYCLICSYMMETRY", "MULTISTAGE", "FLUIDPERIODIC", "FLUIDCYCLIC"], &["ADJUST", "NOROTATION", "TYPE"]),
+    keyword("TRANSFORM", Surfaces, Reader::transform, &["NSET", "TYPE"], &[]),
 ];
 
 /// Keywords that are not read because they are about output, steps or heat, which are nothing of the vibrations.
@@ -163,7 +164,6 @@ const WITHOUT_EFFECT: &[&str] = &[
 /// Keywords that are not read, and what that means.
 const UNREAD: &[(&str, Weight, &str)] = &[
     ("", Weight::Nothing, "a line with nothing but an asterisk"),
-    ("CHANGEFRICTION", Weight::Perhaps, "the friction of *SURFACE INTERACTION is read, not that of a step"),
     ("CLEARANCE", Weight::Perhaps, "gaps are those of the meshes"),
     ("CONNECTORSECTION", Weight::Matters, "connectors are not read"),
     ("CONTACT", Weight::Matters, "general contact is not read: name the pairs with *CONTACT PAIR"),
@@ -203,4 +203,10 @@ pub(super) fn unread(keyword: &str) -> (String, Weight, &'static str) {
     }
     let row = UNREAD.iter().find(|(name, ..)| *name == keyword);
     row.map(named).unwrap_or_else(|| (keyword.to_string(), Weight::Matters, "an unknown keyword"))
+}
+
+/// The keywords that are read.
+#[cfg(test)]
+pub(super) fn words() -> impl Iterator<Item = &'static str> {
+    KEYWORDS.iter().map(|row| row.words)
 }

@@ -1,10 +1,11 @@
 //! *CLOAD, *DLOAD, *DSLOAD, *MOTION.
 
 use super::space::Item;
-use super::surfaces::side_of;
-use super::{Found, Reader, Row};
-use crate::deck::{Frame, Load, LoadOn, Motion, Place};
+use super::{Found, Reader, Row, blocks};
+use crate::deck::{Load, LoadOn, Motion, Place};
 use crate::ledger::Weight;
+
+const GLOBAL: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
 impl Reader {
     /// *CLOAD: nodes, degree of freedom, force.
@@ -12,40 +13,46 @@ impl Reader {
         for row in found.rows() {
             let Some(nodes) = self.nodes_of(space, row.cell(0), row.place) else { continue };
             let Some(size) = self.number(&row, 2) else { continue };
-            let dof = row.cell(1).trim_end_matches('.').parse::<usize>().unwrap_or(0);
+            let Ok(dof) = row.cell(1).trim_end_matches('.').parse::<usize>() else {
+                let words = format!("`{}`", blocks::short(row.cell(1)));
+                self.files.fault(row.place, words, "a degree of freedom");
+                continue;
+            };
             if size == 0.0 {
                 continue;
             }
             if !(1..=3).contains(&dof) {
+                let what = format!("*CLOAD, degree of freedom {dof}");
                 let why = "a moment, or a flux, is not read";
-                self.deck.ledger.note(
-                    Weight::Perhaps,
-                    format!("*CLOAD, degree of freedom {dof}"),
-                    why,
-                    row.place,
-                );
+                self.deck.ledger.note(Weight::Perhaps, what, why, row.place);
                 continue;
             }
-            for node in &nodes {
-                match self.frames.get(node) {
-                    None | Some(Frame::Global) => {}
-                    Some(_) => {
-                        let why = "a force in the frame of a *TRANSFORM is read in that of the coordinates";
-                        self.deck.ledger.note(Weight::Perhaps, "*CLOAD", why, row.place);
-                        break;
-                    }
-                }
-            }
-            let mut force = [0.0; 3];
-            force[dof - 1] = size;
             let name = self.set_words(space, row.cell(0));
-            self.force(name, nodes, force, row.place);
+            let (turned, plain): (Vec<usize>, Vec<usize>) =
+                nodes.into_iter().partition(|node| self.frame_of.contains_key(node));
+            if !plain.is_empty() {
+                let force = std::array::from_fn(|k| if k + 1 == dof { size } else { 0.0 });
+                self.force(name.clone(), plain, force, row.place);
+            }
+            for node in turned {
+                let axes = self.directions_at(node).unwrap_or(GLOBAL);
+                self.force(name.clone(), vec![node], axes[dof - 1].map(|x| size * x), row.place);
+            }
         }
     }
 
-    /// Adds a force; on the same nodes as the last one it is a component of the same.
+    /// Counts the steps with loads.
+    fn loaded(&mut self) {
+        let Some(step) = &mut self.step else { return };
+        self.steps_with_loads += usize::from(!std::mem::replace(&mut step.loaded, true));
+    }
+
+    /// Adds a force; on the same nodes as the last one of the step it is a component of the same.
     fn force(&mut self, name: String, nodes: Vec<usize>, force: [f64; 3], place: Place) {
+        let of_step = self.step.is_none() || self.step.as_ref().is_some_and(|step| step.loaded);
+        self.loaded();
         if let Some(Load { on: LoadOn::Nodes { nodes: last, force: total }, .. }) = self.deck.loads.last_mut()
+            && of_step
             && *last == nodes
         {
             total.iter_mut().zip(force).for_each(|(total, more)| *total += more);
@@ -65,9 +72,13 @@ impl Reader {
                     let Some(pressure) = self.number(&row, 2) else { continue };
                     let side = |item: &Item| {
                         let Item::Shape(index) = item else { return None };
-                        Some((*index, side_of(&self.deck.elements[*index], &label)?))
+                        Some((*index, self.side_of(*index, &label)?))
                     };
                     let faces: Vec<_> = items.iter().filter_map(side).collect();
+                    if !faces.is_empty() && faces.len() < items.len() {
+                        let why = "a pressure on elements that have no such face is not read";
+                        self.deck.ledger.note(Weight::Matters, format!("*DLOAD, {label}"), why, row.place);
+                    }
                     self.pressure(row.cell(0), faces, pressure, row.place);
                 }
                 _ => {
@@ -97,6 +108,9 @@ impl Reader {
                 continue;
             }
             let faces = self.surface_called(space, row.cell(0)).map(|s| s.faces.clone()).unwrap_or_default();
+            if !self.may_name(faces.len(), row.place) {
+                return;
+            }
             self.pressure(row.cell(0), faces, pressure, row.place);
         }
     }
@@ -106,7 +120,8 @@ impl Reader {
             let why = "a pressure on shells or beams is not read";
             self.deck.ledger.note(Weight::Matters, "*DLOAD", why, place);
         } else if pressure != 0.0 {
-            let name = super::blocks::unquoted(name).to_string();
+            self.loaded();
+            let name = blocks::unquoted(name).to_string();
             self.deck.loads.push(Load { name, on: LoadOn::Faces { faces, pressure }, place });
         }
     }
@@ -114,7 +129,8 @@ impl Reader {
     /// ω², a point on the axis, its direction: the speed at which a part turns.
     fn centrifugal(&mut self, space: usize, row: &Row<'_>) {
         let Some([square, px, py, pz, ax, ay, az]) = self.numbers::<7>(row, 2) else { return };
-        if square < 0.0 || [ax, ay, az] == [0.0; 3] {
+        let length = ax.hypot(ay).hypot(az);
+        if square < 0.0 || length == 0.0 || !length.is_finite() {
             self.files.fault(
                 row.place,
                 format!("CENTRIF with ω² = {square}"),
@@ -122,10 +138,16 @@ impl Reader {
             );
             return;
         }
+        if row.cell(0).is_empty() {
+            let why = "a rotation of the whole model is not read: name what turns";
+            self.deck.ledger.note(Weight::Matters, "*DLOAD, CENTRIF", why, row.place);
+            return;
+        }
         if self.items_of(space, row.cell(0), row.place).is_none() {
             return;
         }
-        let set = super::blocks::unquoted(row.cell(0)).to_string();
+        let own = self.spaces[space].element_sets.get(row.cell(0)).map(|set| set.name.clone());
+        let set = own.unwrap_or_else(|| blocks::unquoted(row.cell(0)).to_string());
         self.motion_of(Motion {
             set,
             point: [px, py, pz],
@@ -142,13 +164,30 @@ impl Reader {
             self.deck.ledger.note(Weight::Matters, "*MOTION", why, found.place());
             return;
         }
+        if found.option("TYPE").is_some_and(|of| of.eq_ignore_ascii_case("DISPLACEMENT")) {
+            let why = "an angle of rotation is no speed";
+            self.deck.ledger.note(Weight::Matters, "*MOTION, TYPE=DISPLACEMENT", why, found.place());
+            return;
+        }
+        let by_nodes = found.option("DEFINITION").is_some_and(|of| of.eq_ignore_ascii_case("NODES"));
         for row in found.rows() {
-            let Some([speed, ax, ay, az, bx, by, bz]) = self.numbers::<7>(&row, 1) else { continue };
+            let Some(speed) = self.number(&row, 1) else { continue };
+            let points = if by_nodes {
+                let mut at = |k: usize| {
+                    let node = self.node_of(space, row.cell(k), row.place)?;
+                    Some(self.deck.nodes[node].position)
+                };
+                at(2).zip(at(3))
+            } else {
+                self.numbers::<3>(&row, 2).zip(self.numbers::<3>(&row, 5))
+            };
+            let Some(([ax, ay, az], [bx, by, bz])) = points else { continue };
             if self.nodes_of(space, row.cell(0), row.place).is_none() {
                 continue;
             }
             let axis = [bx - ax, by - ay, bz - az];
-            if axis == [0.0; 3] {
+            let length = axis[0].hypot(axis[1]).hypot(axis[2]);
+            if length == 0.0 || !length.is_finite() {
                 self.files.fault(row.place, "two points of an axis that are one", "two points");
                 continue;
             }

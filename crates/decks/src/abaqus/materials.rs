@@ -7,7 +7,10 @@ use crate::ledger::Weight;
 impl Reader {
     /// *MATERIAL: those that follow are of it.
     pub fn material(&mut self, _: usize, found: Found<'_>) {
-        let name = found.option("NAME").unwrap_or_default().to_string();
+        let Some(name) = found.option("NAME").map(str::to_string) else {
+            self.files.fault(found.place(), "*MATERIAL without a name", "*MATERIAL, NAME=…");
+            return;
+        };
         if self.deck.materials.iter().any(|material| material.name.eq_ignore_ascii_case(&name)) {
             self.files.fault(
                 found.place(),
@@ -39,7 +42,7 @@ impl Reader {
                 format!("*{} without data", found.block.keyword),
                 "a line of numbers",
             );
-        } else if found.block.n_lines() > more {
+        } else if found.lines().count() > more {
             let why = "the first line of a table over temperature is read";
             self.deck.ledger.note(Weight::Perhaps, format!("*{}", found.block.keyword), why, found.place());
         }
@@ -57,7 +60,7 @@ impl Reader {
             Elastic::Isotropic { youngs_modulus, poissons_ratio }
         } else if kind.starts_with("ENGINEERINGCONSTANTS") || kind == "ENGINEERING" {
             let Some(row) = self.first_row(found, 2) else { return };
-            let Some(row) = nine(found, row) else { return };
+            let Some(row) = self.nine(found, row) else { return };
             let Some([e1, e2, e3, n12, n13, n23, g12, g13, g23]) = self.numbers::<9>(&row, 0) else { return };
             Elastic::Orthotropic {
                 youngs_moduli: [e1, e2, e3],
@@ -66,7 +69,7 @@ impl Reader {
             }
         } else if kind.starts_with("ORTHO") {
             let Some(row) = self.first_row(found, 2) else { return };
-            let Some(row) = nine(found, row) else { return };
+            let Some(row) = self.nine(found, row) else { return };
             let Some(stiffness) = self.numbers::<9>(&row, 0) else { return };
             let Some(elastic) = engineering(stiffness) else {
                 let why = "stiffnesses that are not positive definite are not read";
@@ -82,6 +85,26 @@ impl Reader {
         self.deck.materials[material].elastic = Some(elastic);
     }
 
+    /// Nine numbers in two lines: eight in the first.
+    fn nine<'a>(&mut self, found: Found<'a>, first: Row<'a>) -> Option<Row<'a>> {
+        let Row { place, mut cells } = first;
+        while cells.last().is_some_and(|cell| cell.is_empty()) {
+            cells.pop();
+        }
+        if cells.len() == 8 {
+            cells.extend(found.rows().nth(1).into_iter().flat_map(|row| row.cells));
+        }
+        if cells.len() < 9 || cells[8].is_empty() {
+            self.files.fault(
+                place,
+                format!("{} numbers", cells.len().min(8)),
+                "eight numbers, and one in the line below",
+            );
+            return None;
+        }
+        Some(Row { place, cells })
+    }
+
     /// *DENSITY: ρ.
     pub fn density(&mut self, _: usize, found: Found<'_>) {
         let Some(material) = self.open_material(found) else { return };
@@ -92,7 +115,11 @@ impl Reader {
 
     /// *DAMPING: ALPHA, BETA, STRUCTURAL.
     pub fn damping(&mut self, _: usize, found: Found<'_>) {
-        // Within a step it is of modes.
+        if self.step.is_some() {
+            let why = "damping of modes in a step is not read; that of materials is";
+            self.deck.ledger.note(Weight::Perhaps, "*DAMPING", why, found.place());
+            return;
+        }
         let Some(material) = self.open_material(found) else { return };
         let mut value = |name: &str| {
             let cell = found.option(name)?;
@@ -103,17 +130,6 @@ impl Reader {
         material.rayleigh = [alpha, beta];
         material.loss_factor = loss;
     }
-}
-
-/// Nine numbers in two lines: eight in the first.
-fn nine<'a>(found: Found<'a>, first: Row<'a>) -> Option<Row<'a>> {
-    let Row { place, mut cells } = first;
-    while cells.last().is_some_and(|cell| cell.is_empty()) {
-        cells.pop();
-    }
-    cells.truncate(8);
-    cells.extend(found.rows().nth(1)?.cells);
-    Some(Row { place, cells })
 }
 
 /// Engineering constants of a stiffness D1111, D1122, D2222, D1133, D2233, D3333, D1212, D1313, D2323: the inverse of its first block has 1/Eᵢ
@@ -127,5 +143,7 @@ fn engineering([d11, d12, d22, d13, d23, d33, g12, g13, g23]: [f64; 9]) -> Optio
     let beside = [d13 * d23 - d12 * d33, d12 * d23 - d13 * d22, d12 * d13 - d11 * d23];
     let [e1, e2, _] = youngs_moduli;
     let poissons_ratios = [-beside[0] * e1, -beside[1] * e1, -beside[2] * e2].map(|nu| nu / determinant);
+    let constants = [youngs_moduli, poissons_ratios];
+    let positive = positive && constants.as_flattened().iter().all(|constant| constant.is_finite());
     positive.then_some(Elastic::Orthotropic { youngs_moduli, poissons_ratios, shear_moduli: [g12, g13, g23] })
 }

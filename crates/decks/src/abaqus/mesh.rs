@@ -1,10 +1,11 @@
 //! *NODE, *ELEMENT.
 
+use super::collapsed::collapsed;
 use super::space::Item;
 use super::{Found, Reader, Row, points};
 use crate::deck::{Element, Node, Place};
 use crate::ledger::Weight;
-use std::collections::hash_map::Entry;
+use std::collections::btree_map::Entry;
 use stridor_mesh::{CellKind, Program};
 
 impl Reader {
@@ -25,6 +26,14 @@ impl Reader {
             };
             let own = &mut self.spaces[space];
             let position = own.placement.map_or(position, |placement| placement.place(position));
+            if !position.iter().all(|x| x.is_finite()) {
+                self.files.fault(
+                    row.place,
+                    format!("node {number} at {position:?}"),
+                    "a place that is finite",
+                );
+                continue;
+            }
             match own.nodes.entry(number) {
                 Entry::Vacant(free) => {
                     free.insert(self.deck.nodes.len());
@@ -34,7 +43,10 @@ impl Reader {
                 Entry::Occupied(taken) => {
                     let first = &self.deck.nodes[*taken.get()];
                     read.push(*taken.get());
-                    if first.position != position {
+                    if first.position == position {
+                        let why = "nodes that stand there twice, at one place";
+                        self.deck.ledger.note(Weight::Nothing, "*NODE", why, row.place);
+                    } else {
                         let found = format!("a second node {number} at another place");
                         let expected =
                             format!("one node of each number; the first stands in line {}", first.place.line);
@@ -64,11 +76,13 @@ impl Reader {
             let weight = if type_name.starts_with("DC") { Weight::Nothing } else { Weight::Matters };
             self.deck.ledger.note(weight, what, "elements of a type that is not read", found.place());
         }
-        let type_index = self.type_index(&type_name);
+        let type_index = if shape.is_some() { self.type_index(&type_name) } else { 0 };
         let mut read = Vec::new();
         let mut rows = found.rows();
         while let Some(Row { place, mut cells }) = rows.next() {
+            let mut n_lines = 0;
             loop {
+                n_lines += 1;
                 let open = drop_last_empty(&mut cells);
                 // An element goes on until it has its nodes, whether the line ends in a comma or not.
                 let complete =
@@ -80,11 +94,19 @@ impl Reader {
             }
             let Some(number) = self.label(place, cells[0]) else { continue };
             let Some([few, many]) = n_nodes else {
-                self.spaces[space].elements.insert(number, Item::Unread);
+                self.spaces[space].elements.entry(number).or_insert(Item::Unread);
                 read.push(Item::Unread);
                 continue;
             };
             let n_nodes = if cells.len() > many { many } else { few };
+            if cells.len() > n_nodes + 1 && n_lines > 1 {
+                let words = format!(
+                    "element {number} of type {type_name} with {} nodes in {n_lines} lines",
+                    cells.len() - 1
+                );
+                self.files.fault(place, words, format!("{n_nodes} nodes"));
+                continue;
+            }
             if cells.len() > n_nodes + 1 {
                 let what = format!("*ELEMENT, TYPE={type_name}");
                 let why = format!("nodes after the {n_nodes} of the type are not read");
@@ -92,43 +114,73 @@ impl Reader {
             }
             cells.truncate(n_nodes + 1);
             let Some(nodes) = self.element_nodes(space, place, &type_name, &cells, n_nodes) else { continue };
+            if let Some(known) = self.spaces[space].elements.get(&number).copied() {
+                read.extend(self.again(place, &type_name, number, known, &nodes));
+                continue;
+            }
             let item = match &shape {
                 Some((base, _)) => {
-                    let Some((kind, nodes)) = CellKind::of_file(Program::Abaqus, base, &nodes) else {
+                    let own = CellKind::of_file(Program::Abaqus, base, &nodes);
+                    let Some((kind, own)) = own.and_then(|(kind, own)| collapsed(kind, &own)) else {
                         let found =
                             format!("an element {number} of type {type_name} whose nodes fall together");
-                        self.files.fault(
-                            place,
-                            found,
-                            "a brick, or one that is a wedge, a pyramid or a tetrahedron",
-                        );
+                        let expected =
+                            "nodes that differ, or a brick that is a wedge, a pyramid or a tetrahedron";
+                        self.files.fault(place, found, expected);
                         continue;
                     };
-                    self.deck.elements.push(Element { number, kind, type_name: type_index, nodes, place });
+                    if own.len() < n_nodes && kind.dimension() == 3 {
+                        self.collapsed.insert(self.deck.elements.len(), nodes[..8].to_vec());
+                    }
+                    let type_name = type_index;
+                    self.deck.elements.push(Element { number, kind, type_name, nodes: own, place });
                     Item::Shape(self.deck.elements.len() - 1)
                 }
                 None => {
-                    self.points.push(points::PointElement { type_name: type_name.clone(), nodes });
+                    let Some(type_name) = points::type_named(&type_name) else { continue };
+                    self.points.push(points::PointElement { type_name, nodes });
                     Item::Point(self.points.len() - 1)
                 }
             };
-            match self.spaces[space].elements.entry(number) {
-                Entry::Vacant(free) => {
-                    free.insert(item);
-                    read.push(item);
-                }
-                Entry::Occupied(_) => {
-                    self.files.fault(
-                        place,
-                        format!("a second element {number}"),
-                        "one element of each number",
-                    );
-                }
-            }
+            self.spaces[space].elements.insert(number, item);
+            read.push(item);
         }
         if let Some(name) = found.option("ELSET") {
             self.spaces[space].element_set(name).items.extend(read);
         }
+    }
+
+    /// An element whose number is taken: a note if it is the same one, else a fault.
+    fn again(
+        &mut self,
+        place: Place,
+        type_name: &str,
+        number: u64,
+        known: Item,
+        nodes: &[usize],
+    ) -> Option<Item> {
+        let same = match known {
+            Item::Shape(index) => {
+                let element = &self.deck.elements[index];
+                let mut own = [nodes.to_vec(), element.nodes.clone()];
+                own.iter_mut().for_each(|nodes| {
+                    nodes.sort_unstable();
+                    nodes.dedup();
+                });
+                self.deck.type_names[element.type_name as usize] == type_name && own[0] == own[1]
+            }
+            Item::Point(index) => {
+                self.points[index].type_name == type_name && self.points[index].nodes == nodes
+            }
+            Item::Unread => false,
+        };
+        if same {
+            let why = "elements that stand there twice, on the same nodes";
+            self.deck.ledger.note(Weight::Nothing, "*ELEMENT", why, place);
+            return Some(known);
+        }
+        self.files.fault(place, format!("a second element {number}"), "one element of each number");
+        None
     }
 
     /// The nodes of an element by their numbers; a fault where one is not there, or where there are too few.

@@ -5,8 +5,11 @@
 //! Guide*; *CalculiX CrunchiX User's Manual*, *Input deck format*.
 
 mod blocks;
+mod collapsed;
 mod constraints;
 mod contacts;
+mod couplings;
+mod frames;
 mod keywords;
 mod loads;
 mod materials;
@@ -46,11 +49,17 @@ pub(crate) fn read(path: &Path, files: &mut Files) -> Result<Deck> {
         spaces: vec![Space::default()],
         instances: Names::default(),
         points: Vec::new(),
-        frames: HashMap::new(),
+        collapsed: HashMap::new(),
+        outer: None,
+        frames: Vec::new(),
+        frame_of: HashMap::new(),
         orientations: Names::default(),
         interactions: Names::default(),
+        interaction: None,
         pending: Vec::new(),
         step: None,
+        steps_with_loads: 0,
+        members_left: 0,
     };
     for place in &blocks.before {
         reader.deck.ledger.note(Weight::Nothing, "text", "lines before the first keyword", *place);
@@ -59,6 +68,9 @@ pub(crate) fn read(path: &Path, files: &mut Files) -> Result<Deck> {
     for phase in Phase::ALL {
         for (space, block) in &own {
             reader.read_in(phase, *space, Found { blocks: &blocks, block });
+        }
+        if phase == Phase::Sets {
+            reader.settle_sets();
         }
     }
     reader.finish();
@@ -119,14 +131,26 @@ struct Reader {
     instances: Names<usize>,
     /// Elements without a shape: masses, springs, dashpots.
     points: Vec<points::PointElement>,
+    /// Corners of the bricks and quadrilaterals that were read as a kind with fewer, by their elements.
+    collapsed: HashMap<usize, Vec<usize>>,
+    /// Faces that one solid alone has, once they were asked for.
+    outer: Option<Vec<(usize, usize)>>,
     /// Frames of nodes that are not global.
-    frames: HashMap<usize, Frame>,
+    frames: Vec<Frame>,
+    /// Nodes with a frame, as an index of `frames`.
+    frame_of: HashMap<usize, usize>,
     orientations: Names<sections::Orientation>,
     interactions: Names<contacts::Interaction>,
+    /// The one that *FRICTION and *SURFACE BEHAVIOR are of.
+    interaction: Option<String>,
     /// What waits for laws that may stand below it.
     pending: Vec<contacts::PendingContact>,
     /// What the step that is read has asked for so far.
     step: Option<steps::Step>,
+    /// How many steps have loads.
+    steps_with_loads: usize,
+    /// How many members of sets may still be named: sets of sets, and sets that are named again and again, grow beyond the file.
+    members_left: usize,
 }
 
 impl Reader {
@@ -200,6 +224,10 @@ impl Reader {
     /// Moves what the spaces and the pending things have into the deck.
     fn finish(&mut self) {
         self.finish_contacts();
+        if self.steps_with_loads > 1 {
+            let why = "loads of several steps are read side by side";
+            self.deck.ledger.note(Weight::Perhaps, "*STEP", why, Place::default());
+        }
         self.finish_step();
         for space in std::mem::take(&mut self.spaces) {
             space.into_deck(&mut self.deck);

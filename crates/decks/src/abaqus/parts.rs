@@ -1,6 +1,7 @@
 //! *PART, *ASSEMBLY, *INSTANCE: a part is read once for each of its instances, where that is placed.
 
-use super::names::{Names, key};
+use super::frames::rotation;
+use super::names::Names;
 use super::space::{Placement, Space};
 use super::{Block, Blocks, Found, Reader};
 use crate::ledger::Weight;
@@ -11,6 +12,11 @@ struct Part<'b> {
     used: bool,
 }
 
+/// The most times that the bytes of a file may be placed as parts: a part is read once for each instance.
+const MOST_COPIES: usize = 64;
+/// Members of sets that may be named, beside four for each byte.
+const FEWEST_MEMBERS: usize = 1 << 16;
+
 impl Reader {
     /// Reads the mesh of all instances into spaces of their own; gives the blocks of the model with their spaces, the others of parts
     /// among them.
@@ -19,11 +25,16 @@ impl Reader {
         let mut placed: Vec<(usize, &'b Block)> = Vec::new();
         let mut part: Option<String> = None;
         let mut instance: Option<usize> = None;
+        let mut copied = 0;
         for block in &all.blocks {
             let found = Found { blocks: all, block };
             match block.keyword.as_str() {
                 "PART" => {
                     let name = found.option("NAME").unwrap_or_default().to_string();
+                    if parts.get(&name).is_some() {
+                        let words = format!("a second *PART `{name}`");
+                        self.files.fault(block.place, words, "names that are different");
+                    }
                     parts.entry(&name, || Part { blocks: Vec::new(), used: false });
                     part = Some(name);
                 }
@@ -34,10 +45,20 @@ impl Reader {
                     let of = found.option("PART").unwrap_or_default();
                     match parts.get(of).map(|part| part.blocks.clone()) {
                         Some(blocks) => {
+                            copied += blocks.iter().map(|block| block.n_bytes()).sum::<usize>();
+                            if copied > MOST_COPIES * (all.n_bytes() + MOST_COPIES) {
+                                let words = format!("parts of {copied} bytes in all instances");
+                                let expected = format!("at most {MOST_COPIES} times as many as the file has");
+                                self.files.fault(block.place, words, expected);
+                                return Vec::new();
+                            }
                             parts.entry(of, || unreachable!("it is there")).used = true;
                             placed.extend(blocks.into_iter().map(|block| (space, block)));
                         }
-                        None if of.is_empty() => {}
+                        None if of.is_empty() => {
+                            let why = "an instance of another model's results is not read";
+                            self.deck.ledger.note(Weight::Matters, "*INSTANCE", why, block.place);
+                        }
                         None => self.files.fault(
                             block.place,
                             format!("*INSTANCE of part `{of}`"),
@@ -65,6 +86,7 @@ impl Reader {
                 first.place,
             );
         }
+        self.members_left = 4 * (all.n_bytes() + copied) + FEWEST_MEMBERS;
         // Instances before the model, which names what is in them.
         placed.sort_by_key(|(space, _)| (*space == 0, *space));
         placed
@@ -81,7 +103,7 @@ impl Reader {
                 "names that are different",
             );
         }
-        self.instances.entry(&key(&name), || space);
+        self.instances.entry(&name, || space);
         let placement = self.placement(found);
         self.spaces.push(Space { name, placement, ..Space::default() });
         space
@@ -96,7 +118,7 @@ impl Reader {
         let [ax, ay, az, bx, by, bz, angle] = self.numbers::<7>(&row, 0)?;
         let axis = [bx - ax, by - ay, bz - az];
         let length = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
-        if length == 0.0 {
+        if length == 0.0 || !length.is_finite() {
             self.files.fault(row.place, "two points of an axis that are one", "two points");
             return None;
         }
@@ -107,16 +129,4 @@ impl Reader {
         let turned = turn.turn(moved);
         Some(Placement { rotation, translation: std::array::from_fn(|i| turned[i] + [ax, ay, az][i]) })
     }
-}
-
-/// R = I cos α + (1 − cos α) n nᵀ + sin α n×, about a unit vector n.
-fn rotation(n: [f64; 3], angle: f64) -> [[f64; 3]; 3] {
-    let (sin, cos) = angle.sin_cos();
-    let cross = [[0.0, -n[2], n[1]], [n[2], 0.0, -n[0]], [-n[1], n[0], 0.0]];
-    std::array::from_fn(|i| {
-        std::array::from_fn(|j| {
-            let one = if i == j { cos } else { 0.0 };
-            one + (1.0 - cos) * n[i] * n[j] + sin * cross[i][j]
-        })
-    })
 }

@@ -1,12 +1,10 @@
 //! *NSET, *ELSET.
 
-use super::space::Item;
+use super::space::{Item, Space};
 use super::{Found, Reader, Row};
 use crate::deck::Place;
 use crate::ledger::Weight;
-
-/// The most members that lines of `GENERATE` may name in all, beyond those that are there.
-const MOST_STEPS: u64 = 1_000_000_000;
+use std::collections::BTreeMap;
 
 impl Reader {
     /// *NSET: numbers and names of sets, ranges with GENERATE, or the nodes of a set of elements.
@@ -23,12 +21,7 @@ impl Reader {
         }
         for row in found.rows() {
             if found.block.has("GENERATE") {
-                members.extend(self.range(
-                    &row,
-                    |reader, number| reader.spaces[of].nodes.get(&number).copied(),
-                    of,
-                    true,
-                ));
+                members.extend(self.range(&row, of, "NSET", |space| &space.nodes));
                 continue;
             }
             for cell in row.cells.iter().filter(|cell| !cell.is_empty()) {
@@ -41,6 +34,7 @@ impl Reader {
         }
         let set = self.spaces[space].node_set(name);
         set.members.extend(members);
+        set.unsorted |= found.block.has("UNSORTED");
         set.internal |= found.block.has("INTERNAL");
     }
 
@@ -54,12 +48,7 @@ impl Reader {
         let mut members = Vec::new();
         for row in found.rows() {
             if found.block.has("GENERATE") {
-                members.extend(self.range(
-                    &row,
-                    |reader, number| reader.spaces[of].elements.get(&number).copied(),
-                    of,
-                    false,
-                ));
+                members.extend(self.range(&row, of, "ELSET", |space| &space.elements));
                 continue;
             }
             for cell in row.cells.iter().filter(|cell| !cell.is_empty()) {
@@ -102,37 +91,22 @@ impl Reader {
     }
 
     /// What is there of first, first + step … last.
-    fn range<T>(
+    fn range<T: Copy>(
         &mut self,
         row: &Row<'_>,
-        get: impl Fn(&Self, u64) -> Option<T>,
         space: usize,
-        nodes: bool,
+        keyword: &str,
+        numbered: fn(&Space) -> &BTreeMap<u64, T>,
     ) -> Vec<T> {
-        let Row { place, .. } = *row;
         let Some([first, last, step]) = self.range_numbers(row) else { return Vec::new() };
-        let own = &self.spaces[space];
-        let known = if nodes { own.nodes.len() } else { own.elements.len() } as u64;
-        let count = (last - first) / step + 1;
-        // A range of more than there is: it is quicker to look at what is there.
-        if count > MOST_STEPS.min(known.saturating_mul(64).max(1024)) {
-            let numbers: Vec<u64> = if nodes {
-                own.nodes.keys().copied().collect()
-            } else {
-                own.elements.keys().copied().collect()
-            };
-            let mut inside: Vec<u64> = numbers
-                .into_iter()
-                .filter(|n| *n >= first && *n <= last && (*n - first) % step == 0)
-                .collect();
-            inside.sort_unstable();
-            return inside.into_iter().filter_map(|number| get(self, number)).collect();
-        }
-        let found: Vec<T> = (0..count).filter_map(|k| get(self, first + k * step)).collect();
+        let inside = || numbered(&self.spaces[space]).range(first..=last);
+        let n_inside = inside().count();
+        let of_step = |(number, _): &(&u64, &T)| (**number - first).is_multiple_of(step);
+        let found: Vec<T> = inside().filter(of_step).map(|(_, item)| *item).collect();
         if found.is_empty() {
-            self.missing(if nodes { "NSET" } else { "ELSET" }, place);
+            self.missing(keyword, row.place);
         }
-        found
+        if self.may_name(n_inside, row.place) { found } else { Vec::new() }
     }
 
     /// Notes a member of a set that is not in the file, as these programs do.

@@ -3,7 +3,7 @@
 use super::names::Names;
 use super::{Reader, blocks};
 use crate::deck::{Deck, Place, Set, Surface};
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashSet};
 
 /// What names and numbers mean.
 #[derive(Debug, Default)]
@@ -12,9 +12,9 @@ pub(super) struct Space {
     pub name: String,
     /// How the part is placed.
     pub placement: Option<Placement>,
-    pub nodes: HashMap<u64, usize>,
-    pub elements: HashMap<u64, Item>,
-    pub node_sets: Names<Set>,
+    pub nodes: BTreeMap<u64, usize>,
+    pub elements: BTreeMap<u64, Item>,
+    pub node_sets: Names<NodeSet>,
     pub element_sets: Names<ElementSet>,
     pub surfaces: Names<Surface>,
 }
@@ -28,6 +28,16 @@ pub(super) enum Item {
     Point(usize),
     /// Of a type that is not read.
     Unread,
+}
+
+/// A set of nodes.
+#[derive(Debug, Default)]
+pub(super) struct NodeSet {
+    pub name: String,
+    /// By their numbers, each once; in the order of the file where it is to be kept.
+    pub members: Vec<usize>,
+    pub unsorted: bool,
+    pub internal: bool,
 }
 
 /// A set of elements of all sorts.
@@ -66,9 +76,9 @@ impl Space {
     }
 
     /// The set of nodes of this name, made if there is none.
-    pub fn node_set(&mut self, name: &str) -> &mut Set {
+    pub fn node_set(&mut self, name: &str) -> &mut NodeSet {
         let own = self.qualified(name);
-        self.node_sets.entry(name, || Set { name: own, members: Vec::new(), internal: false })
+        self.node_sets.entry(name, || NodeSet { name: own, ..NodeSet::default() })
     }
 
     /// The set of elements of this name, made if there is none.
@@ -84,8 +94,9 @@ impl Space {
             members.dedup();
             members
         };
-        let named = self.node_sets.all.into_iter();
-        deck.node_sets.extend(named.map(|set| Set { members: sorted(set.members), ..set }));
+        for NodeSet { name, members, internal, .. } in self.node_sets.all {
+            deck.node_sets.push(Set { name, members: sorted(members), internal });
+        }
         for set in self.element_sets.all {
             let shape = |item: &Item| if let Item::Shape(index) = item { Some(*index) } else { None };
             let members = sorted(set.items.iter().filter_map(shape).collect());
@@ -95,11 +106,14 @@ impl Space {
     }
 }
 
+/// The most dots of a name that may stand before what is within an instance.
+const MOST_DOTS: usize = 16;
+
 impl Reader {
     /// A name as seen from a space: its own, or of the model `INSTANCE.NAME`; the space and the name within.
     fn candidates<'n>(&self, space: usize, name: &'n str) -> Vec<(usize, &'n str)> {
         let mut found = vec![(space, name)];
-        let dots = name.match_indices('.').map(|(at, _)| at);
+        let dots = name.match_indices('.').map(|(at, _)| at).take(MOST_DOTS);
         found.extend(dots.filter_map(|at| {
             let instance = self.instances.get(&name[..at])?;
             Some((*instance, &name[at + 1..]))
@@ -124,6 +138,9 @@ impl Reader {
     /// [`Reader::nodes_called`], or a fault.
     pub fn nodes_of(&mut self, space: usize, name: &str, place: Place) -> Option<Vec<usize>> {
         let found = self.nodes_called(space, name);
+        if found.as_ref().is_some_and(|found| !self.may_name(found.len(), place)) {
+            return None;
+        }
         if found.is_none() {
             self.files.fault(
                 place,
@@ -160,6 +177,9 @@ impl Reader {
     /// [`Reader::items_called`], or a fault.
     pub fn items_of(&mut self, space: usize, name: &str, place: Place) -> Option<Vec<Item>> {
         let found = self.items_called(space, name);
+        if found.as_ref().is_some_and(|found| !self.may_name(found.len(), place)) {
+            return None;
+        }
         if found.is_none() {
             self.files.fault(
                 place,
@@ -185,5 +205,35 @@ impl Reader {
     pub fn surface_called(&self, space: usize, name: &str) -> Option<&Surface> {
         let candidates = self.candidates(space, name);
         candidates.into_iter().find_map(|(space, name)| self.spaces[space].surfaces.get(name))
+    }
+
+    /// Whether so many members of sets may still be named; a fault where not.
+    pub fn may_name(&mut self, members: usize, place: Place) -> bool {
+        let may = members <= self.members_left;
+        if !may {
+            let expected = "a file that does not name the same members again and again";
+            self.files.fault(place, "sets with too many members in all", expected);
+        }
+        self.members_left = self.members_left.saturating_sub(members);
+        may
+    }
+
+    /// Sorts the sets once all are there.
+    pub fn settle_sets(&mut self) {
+        for space in &mut self.spaces {
+            for set in &mut space.node_sets.all {
+                if set.unsorted {
+                    let mut seen = HashSet::new();
+                    set.members.retain(|node| seen.insert(*node));
+                } else {
+                    set.members.sort_unstable_by_key(|node| (self.deck.nodes[*node].number, *node));
+                    set.members.dedup();
+                }
+            }
+            for set in &mut space.element_sets.all {
+                set.items.sort_unstable();
+                set.items.dedup();
+            }
+        }
     }
 }

@@ -7,6 +7,8 @@ use crate::deck::Analysis;
 #[derive(Debug, Default)]
 pub(super) struct Step {
     analysis: Option<Analysis>,
+    /// Whether it has loads.
+    pub loaded: bool,
 }
 
 impl Reader {
@@ -44,7 +46,7 @@ impl Reader {
         let Some(row) = found.rows().next() else { return (None, [None; 2]) };
         let cell = row.cell(0).trim_end_matches('.');
         let count = cell.parse().ok().filter(|count| *count > 0);
-        if count.is_none() && !cell.is_empty() {
+        if count.is_none() && !cell.is_empty() && !cell.eq_ignore_ascii_case("ALL") {
             self.files.fault(row.place, format!("`{}`", blocks::short(cell)), "the number of modes, or none");
         }
         let mut at = |k: usize| if row.cell(k).is_empty() { None } else { self.number(&row, k) };
