@@ -10,6 +10,8 @@ use stridor_base::error::{Error, Fault, Result, nearest};
 pub enum Format {
     /// Input files of Abaqus and CalculiX.
     Abaqus,
+    /// Archives of ANSYS Mechanical APDL.
+    Ansys,
 }
 
 /// A row of the table of formats.
@@ -23,12 +25,10 @@ struct Row {
 }
 
 /// All of them.
-const FORMATS: &[Row] = &[Row {
-    format: Format::Abaqus,
-    name: "abaqus",
-    endings: &["inp"],
-    read: crate::abaqus::read,
-}];
+const FORMATS: &[Row] = &[
+    Row { format: Format::Abaqus, name: "abaqus", endings: &["inp"], read: crate::abaqus::read },
+    Row { format: Format::Ansys, name: "ansys", endings: &["cdb"], read: crate::ansys::read },
+];
 
 impl Format {
     /// The row of the table.
@@ -71,9 +71,14 @@ impl Format {
         if let Some(row) = FORMATS.iter().find(|row| row.endings.contains(&ending.as_str())) {
             return Ok(row.format);
         }
-        let all: Vec<_> = FORMATS.iter().map(|row| format!(".{} ({})", row.endings.join(", ."), row.name)).collect();
+        let all: Vec<_> =
+            FORMATS.iter().map(|row| format!(".{} ({})", row.endings.join(", ."), row.name)).collect();
         let expected = format!("a file that ends in {}", all.join(", "));
-        let found = if ending.is_empty() { "a name without an ending".into() } else { format!("a name that ends in `.{ending}`") };
+        let found = if ending.is_empty() {
+            "a name without an ending".into()
+        } else {
+            format!("a name that ends in `.{ending}`")
+        };
         let help = "Say what it is with --format";
         Err(Error::input(Fault::new(path.display().to_string(), found, expected).with_help(help)))
     }

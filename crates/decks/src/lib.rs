@@ -7,14 +7,16 @@
 //! One folder a format; each reads lines with their places into [`Deck`] and knows nothing of a case.
 
 mod abaqus;
+mod ansys;
 mod deck;
 mod format;
 mod ledger;
 mod text;
 
 pub use deck::{
-    Analysis, Contact, Coupling, CouplingKind, Deck, Elastic, Element, Equation, Frame, Load, LoadOn, Material,
-    Motion, Node, Place, PointMass, Profile, Section, SectionShape, Set, ShellFace, Spring, Support, Surface, Tie,
+    Analysis, Contact, Coupling, CouplingKind, Deck, Elastic, Element, Equation, Frame, Load, LoadOn,
+    Material, Motion, Node, Place, PointMass, Profile, Section, SectionShape, Set, ShellFace, Spring,
+    Support, Surface, Tie,
 };
 pub use format::{Format, read};
 pub use ledger::{Ledger, Unread, Weight};
