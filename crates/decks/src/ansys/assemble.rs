@@ -256,8 +256,6 @@ fn spring(
 /// Components as sets.
 fn sets(reader: &mut Reader<'_>, deck: &mut Deck) {
     let components = std::mem::take(&mut reader.model.components);
-    // Members in proportion to the file: ranges are short, and what they stand for is not.
-    let mut left = reader.budget / 8;
     for (k, component) in components.iter().enumerate() {
         let upper = component.name.to_ascii_uppercase();
         if reader.model.names.get(&upper) != Some(&k) {
@@ -266,15 +264,9 @@ fn sets(reader: &mut Reader<'_>, deck: &mut Deck) {
             continue;
         }
         let members = reader.model.members(component);
-        let Some(rest) = left.checked_sub(members.len()) else {
-            reader.fault(
-                component.place,
-                "components with more members in all than can be read",
-                "fewer of them",
-            );
+        if !reader.keep(component.place, members.len()) {
             return;
-        };
-        left = rest;
+        }
         let numbers = |number: &u64| {
             if component.of_nodes {
                 deck.nodes.binary_search_by_key(number, |node| node.number).ok()

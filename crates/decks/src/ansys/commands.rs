@@ -126,8 +126,11 @@ impl<'a> Reader<'a> {
             }
         };
         let selected = self.model.selected(of_nodes);
-        match selected.and_then(|selected| self.spend(command, selected)) {
+        match selected.and_then(|selected| self.spend(command, selected, 0)) {
             Some(members) => {
+                if !self.keep(command.place, members.len()) {
+                    return;
+                }
                 let ranges = members.into_iter().map(|number| (number, number)).collect();
                 let component = super::model::Component::new(command.arg(0), of_nodes, ranges, command.place);
                 self.model.add_component(component);

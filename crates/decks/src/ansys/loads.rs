@@ -17,12 +17,13 @@ impl Reader<'_> {
             let number = self.whole(command, k).and_then(|number| u64::try_from(number).ok())?;
             return Some(vec![number]);
         };
-        let members = members.and_then(|members| self.spend(command, members));
+        let members = members.and_then(|members| self.spend(command, members, 0));
         if members.is_none() {
             let why = "on a selection that is not known: not read";
             self.note(Weight::Matters, &command.name, why, command.place);
         }
-        members.map(|members| members.into_iter().collect())
+        let members = members.filter(|members| self.keep(command.place, members.len()))?;
+        Some(members.into_iter().collect())
     }
 
     /// The nodes of D and F: the first argument, and those up to argument `k` in steps of the one after it.
@@ -33,8 +34,9 @@ impl Reader<'_> {
             let step = self.whole(command, k + 1)?.unsigned_abs().max(1);
             let own = self.model.nodes.range(first..=last.max(first)).map(|(number, _)| *number);
             nodes = own.filter(|number| (number - first) % step == 0).collect();
-            let nodes_there = nodes.iter().copied().collect();
-            self.spend(command, nodes_there)?;
+            if !self.keep(command.place, nodes.len()) {
+                return None;
+            }
         }
         Some(nodes)
     }

@@ -57,6 +57,8 @@ pub(super) struct Reader<'a> {
     pub model: Model,
     /// Work that selections may still make.
     pub budget: usize,
+    /// Members of components and selections that may still be kept.
+    pub members_left: usize,
     file: u32,
     lines: Lines<'a>,
 }
@@ -65,8 +67,9 @@ impl<'a> Reader<'a> {
     pub fn new(files: &'a mut Files, file: u32, text: &'a str) -> Reader<'a> {
         // Work of selections in proportion to the file, so that no file takes quadratic time.
         let budget = text.len().saturating_mul(50) + 10_000_000;
+        let members_left = text.len() + 1_000_000;
         let model = Model::default();
-        Reader { files, model, budget, file, lines: Lines { rest: text, number: 0 } }
+        Reader { files, model, budget, members_left, file, lines: Lines { rest: text, number: 0 } }
     }
 
     /// Reads the whole file.

@@ -2,6 +2,7 @@
 
 use super::model::{Attributes, Component, Model};
 use super::reader::{Command, Reader};
+use crate::deck::Place;
 use crate::ledger::Weight;
 use std::collections::BTreeSet;
 
@@ -93,7 +94,7 @@ impl Reader<'_> {
             }
             _ => match self.model.component(command.arg(1)).cloned() {
                 Some(component) => {
-                    let members = self.spend(command, self.model.members(&component));
+                    let members = self.spend(command, self.model.members(&component), 0);
                     self.combine(command, component.of_nodes, members, &how);
                 }
                 None => self.fault(
@@ -118,7 +119,8 @@ impl Reader<'_> {
                 elements.filter(|(_, own)| touches(&own.nodes)).map(|(number, _)| *number).collect()
             }
         });
-        let found = found.and_then(|found| self.spend(command, found));
+        let work = self.model.elements.len();
+        let found = found.and_then(|found| self.spend(command, found, work));
         self.combine(command, of_nodes, found, &command.word(0));
     }
 
@@ -135,7 +137,7 @@ impl Reader<'_> {
     fn found(&mut self, command: &Command<'_>, of_nodes: bool, item: &str) -> Option<BTreeSet<u64>> {
         let named = self.model.component(command.arg(3)).filter(|own| own.of_nodes == of_nodes).cloned();
         if let (Some(component), "NODE" | "ELEM") = (named, item) {
-            return self.spend(command, self.model.members(&component));
+            return self.spend(command, self.model.members(&component), 0);
         }
         let low = self.value(command.arg(3))?;
         let high = if command.arg(4).is_empty() { low } else { self.value(command.arg(4))? };
@@ -173,27 +175,38 @@ impl Reader<'_> {
             }
             _ => return None,
         };
-        self.spend(command, found)
+        let work = self.model.nodes.len() + self.model.elements.len();
+        self.spend(command, found, work)
     }
 
-    /// Members, as long as the work that all such commands of a file make is in proportion to it.
-    pub fn spend(&mut self, command: &Command<'_>, members: BTreeSet<u64>) -> Option<BTreeSet<u64>> {
-        let work = self.model.nodes.len() + self.model.elements.len();
-        match self.budget.checked_sub(work) {
-            Some(left) => {
-                self.budget = left;
-                Some(members)
-            }
-            None => {
-                self.budget = 0;
-                self.fault(
-                    command.place,
-                    "more selections of all nodes than can be followed",
-                    "fewer of them",
-                );
-                None
-            }
+    /// Members, as long as the work of all such commands is in proportion to the file; `work` is that of finding them.
+    pub fn spend(
+        &mut self,
+        command: &Command<'_>,
+        members: BTreeSet<u64>,
+        work: usize,
+    ) -> Option<BTreeSet<u64>> {
+        let work = work.max(members.len()) + 1;
+        let left = self.budget.checked_sub(work);
+        if left.is_none() {
+            self.fault(command.place, "more selections of many nodes than can be followed", "fewer of them");
         }
+        self.budget = left.unwrap_or(0);
+        left.map(|_| members)
+    }
+
+    /// Whether a list of members may be kept: all of them together are in proportion to the file.
+    pub fn keep(&mut self, place: Place, count: usize) -> bool {
+        let left = self.members_left.checked_sub(count);
+        if left.is_none() {
+            self.fault(
+                place,
+                "components and selections with more members in all than can be kept",
+                "fewer of them",
+            );
+        }
+        self.members_left = left.unwrap_or(0);
+        left.is_some()
     }
 
     fn set_selection(&mut self, of_nodes: bool, selection: Selection) {
