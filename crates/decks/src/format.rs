@@ -12,6 +12,8 @@ pub enum Format {
     Abaqus,
     /// Archives of ANSYS Mechanical APDL.
     Ansys,
+    /// Universal files.
+    Universal,
 }
 
 /// A row of the table of formats.
@@ -28,6 +30,12 @@ struct Row {
 const FORMATS: &[Row] = &[
     Row { format: Format::Abaqus, name: "abaqus", endings: &["inp"], read: crate::abaqus::read },
     Row { format: Format::Ansys, name: "ansys", endings: &["cdb"], read: crate::ansys::read },
+    Row {
+        format: Format::Universal,
+        name: "universal",
+        endings: &["unv", "uff"],
+        read: crate::universal::read,
+    },
 ];
 
 impl Format {

@@ -12,6 +12,7 @@ mod deck;
 mod format;
 mod ledger;
 mod text;
+mod universal;
 
 pub use deck::{
     Analysis, Contact, Coupling, CouplingKind, Deck, Elastic, Element, Equation, Frame, Load, LoadOn,
