@@ -10,6 +10,10 @@ use stridor_base::error::{Error, Fault, Result, nearest};
 pub enum Format {
     /// Input files of Abaqus and CalculiX.
     Abaqus,
+    /// Archives of ANSYS Mechanical APDL.
+    Ansys,
+    /// Universal files.
+    Universal,
 }
 
 /// A row of the table of formats.
@@ -23,8 +27,16 @@ struct Row {
 }
 
 /// All of them.
-const FORMATS: &[Row] =
-    &[Row { format: Format::Abaqus, name: "abaqus", endings: &["inp"], read: crate::abaqus::read }];
+const FORMATS: &[Row] = &[
+    Row { format: Format::Abaqus, name: "abaqus", endings: &["inp"], read: crate::abaqus::read },
+    Row { format: Format::Ansys, name: "ansys", endings: &["cdb"], read: crate::ansys::read },
+    Row {
+        format: Format::Universal,
+        name: "universal",
+        endings: &["unv", "uff"],
+        read: crate::universal::read,
+    },
+];
 
 impl Format {
     /// The row of the table.

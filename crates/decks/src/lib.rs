@@ -9,10 +9,12 @@
 
 mod abaqus;
 mod convert;
+mod ansys;
 mod deck;
 mod format;
 mod ledger;
 mod text;
+mod universal;
 
 pub use convert::{Converted, Units, convert};
 pub use deck::{

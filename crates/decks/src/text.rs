@@ -66,7 +66,11 @@ impl Files {
         help: &str,
     ) {
         let place = place_words(&self.paths, place);
-        let fault = Fault::new(place, found, expected).with_help(help);
+        self.keep(Fault::new(place, found, expected).with_help(help));
+    }
+
+    /// Keeps a fault.
+    pub fn keep(&mut self, fault: Fault) {
         // A part that is placed twice is read twice.
         if self.faults.0.len() < MOST_FAULTS && !self.faults.0.contains(&fault) {
             self.faults.push(fault);

@@ -2,11 +2,11 @@
 
 use super::super::records::FunctionRecord;
 use super::super::set::Quantity;
-use super::dataset::{Binary, Dataset, shown};
-use super::form::ValueLayout;
-use super::record::{columns, e_format, text_line, whole};
 use super::units::{UnitFactors, hertz, is_force, labelled, order};
 use stridor_base::error::Result;
+use stridor_base::universal::ValueLayout;
+use stridor_base::universal::record::{columns, e_format, text_line, whole};
+use stridor_base::universal::{Binary, Dataset, shown};
 use stridor_linalg::c64;
 
 /// Code of a frequency response function.

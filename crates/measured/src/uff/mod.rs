@@ -15,13 +15,9 @@
 //! Anything else is skipped with a warning. What cannot be used costs itself: a point, a mode, a response or a frequency of it is
 //! left out with a warning that names file, line and reason.
 
-mod dataset;
 mod elements;
-mod file;
-mod form;
 mod function;
 mod nodes;
-mod record;
 mod shape;
 mod systems;
 mod units;
@@ -35,6 +31,7 @@ use super::set::Quantity;
 use std::collections::BTreeMap;
 use stridor_base::error::read::utf_16;
 use stridor_base::error::{Error, Result};
+use stridor_base::universal::datasets;
 use systems::Systems;
 
 /// Datasets that say nothing about the test.
@@ -67,7 +64,7 @@ pub fn read(file: &str, bytes: &[u8], unstated: Unstated) -> Result<TestRecords>
     let mut skipped: BTreeMap<String, usize> = BTreeMap::new();
     let (mut points, mut systems) = (Vec::new(), Systems::default());
     let (mut without_unit, mut elements) = (0, 0);
-    for dataset in file::datasets(file, bytes, &mut |error| lost.note(error))? {
+    for dataset in datasets(file, bytes, &mut |error| lost.note(error))? {
         let mut skip = |what: String| *skipped.entry(what).or_insert(0) += 1;
         let length = units.map_or(unstated.unit, |u: units::UnitFactors| u.length);
         match dataset.kind {

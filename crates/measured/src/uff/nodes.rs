@@ -1,10 +1,10 @@
 //! Points: dataset 15 (single precision) and 2411 (double precision).
 
-use super::dataset::{Dataset, shown};
-use super::record::e_format;
 use super::systems::{System, Systems};
 use std::collections::{BTreeMap, BTreeSet};
 use stridor_base::error::{Error, Result};
+use stridor_base::universal::record::e_format;
+use stridor_base::universal::{Dataset, shown};
 
 /// Fields of a line of dataset 15: label, two coordinate systems, colour, coordinates.
 const SINGLE: [usize; 7] = [10, 10, 10, 10, 13, 13, 13];
@@ -64,9 +64,10 @@ fn point(dataset: &Dataset<'_>, index: usize, unit: f64) -> Result<PointRecord> 
         let [label, definition, displacement, _] = dataset.wholes(index, [10; 4])?;
         ([label, definition, displacement], dataset.numbers(index + 1, &[25])?)
     } else {
-        let fields = super::record::fields(dataset.line(index)?, &SINGLE);
+        let fields = stridor_base::universal::record::fields(dataset.line(index)?, &SINGLE);
         let number = |field: &String| {
-            super::record::float(field).ok_or_else(|| dataset.fault(index, shown(field), "a finite number"))
+            stridor_base::universal::record::float(field)
+                .ok_or_else(|| dataset.fault(index, shown(field), "a finite number"))
         };
         let numbers = fields.iter().map(number).collect::<Result<Vec<f64>>>()?;
         // Whole numbers that fit: labels have at most ten digits.

@@ -1,11 +1,11 @@
 //! Mode shapes: dataset 55, data at nodes.
 
 use super::super::records::ModeRecord;
-use super::dataset::Dataset;
-use super::record::{e_format, text_line};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use stridor_base::error::Result;
+use stridor_base::universal::Dataset;
+use stridor_base::universal::record::{e_format, text_line};
 use stridor_linalg::c64;
 
 /// Codes of the analysis: normal modes, complex modes of first and second order.

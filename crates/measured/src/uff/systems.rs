@@ -3,10 +3,10 @@
 //! A cylindrical system has coordinates r, θ, z with θ in degrees from its x axis, and directions e_r, e_θ, e_z that depend on
 //! the place. Of numbers 0 and 1 the file need not say anything: they are the frame of the test.
 
-use super::dataset::Dataset;
 use nalgebra::{Matrix3, Vector3};
 use std::collections::BTreeMap;
 use stridor_base::error::Result;
+use stridor_base::universal::Dataset;
 
 /// Types of coordinates.
 const CARTESIAN: i64 = 0;

@@ -1,5 +1,6 @@
 use super::*;
 use stridor_base::bounds::{Origin::*, within};
+use stridor_base::universal::record;
 use stridor_linalg::c64;
 
 const SI: Unstated = Unstated { unit: 1.0, quantity: None };

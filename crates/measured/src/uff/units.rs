@@ -1,7 +1,7 @@
 //! Units: dataset 164, and the labels of axes.
 
-use super::dataset::Dataset;
 use stridor_base::error::Result;
+use stridor_base::universal::Dataset;
 
 /// Factors from the units of the file to SI.
 #[derive(Debug, Clone, Copy)]

@@ -2,10 +2,10 @@
 
 use super::dataset::{Dataset, shown};
 use super::record::{columns, float, whole};
-use stridor_base::error::Result;
+use crate::error::Result;
 
 /// How the numbers of a function are stored.
-pub(super) struct ValueLayout {
+pub struct ValueLayout {
     /// 2, 4: real; 5, 6: complex; single and double precision.
     pub kind: i64,
     /// How many values.

@@ -3,7 +3,7 @@
 use super::dataset::{Binary, Dataset, DatasetLine, shown};
 use super::form::ValueLayout;
 use super::record::whole;
-use stridor_base::error::{Error, Fault, Result};
+use crate::error::{Error, Fault, Result};
 
 /// Lines of text before the numbers of a dataset 58.
 const HEADER: usize = 11;
@@ -66,7 +66,7 @@ fn kind_of(text: &str) -> Option<(u32, bool)> {
 /// end, binary numbers of unknown form. Refused is a file without any.
 ///
 /// A mark `-1` too few or too many between two datasets is no reason to lose them.
-pub(super) fn datasets<'a>(
+pub fn datasets<'a>(
     file: &'a str,
     bytes: &'a [u8],
     lost: &mut impl FnMut(Error),

@@ -1,17 +1,19 @@
 //! One dataset of a universal file.
 
 use super::record::{fields, whole};
+use crate::error::{Error, Fault, Result};
 use std::borrow::Cow;
-use stridor_base::error::{Error, Fault, Result};
 
 /// A line with its number.
-pub(super) struct DatasetLine<'a> {
+pub struct DatasetLine<'a> {
+    /// Its text.
     pub text: Cow<'a, str>,
+    /// Counted from 1.
     pub number: usize,
 }
 
 /// One dataset.
-pub(super) struct Dataset<'a> {
+pub struct Dataset<'a> {
     /// Number of the type of dataset.
     pub kind: u32,
     /// Its lines of text.
@@ -25,8 +27,10 @@ pub(super) struct Dataset<'a> {
 }
 
 /// Binary numbers.
-pub(super) struct Binary<'a> {
+pub struct Binary<'a> {
+    /// Their bytes.
     pub data: &'a [u8],
+    /// Whether the first byte of a number is the highest.
     pub big_endian: bool,
     /// Bytes of an abscissa (0 where it is even), and of a value.
     pub sizes: [usize; 2],
@@ -56,12 +60,18 @@ impl Dataset<'_> {
     }
 
     /// The line with this index.
+    ///
+    /// # Errors
+    /// The dataset ends before it.
     pub fn line(&self, index: usize) -> Result<&str> {
         let cut = || self.fault(self.lines.len().saturating_sub(1), "the end of the dataset", "more lines");
         self.lines.get(index).map(|line| &*line.text).ok_or_else(cut)
     }
 
     /// Whole numbers at the beginning of a line.
+    ///
+    /// # Errors
+    /// What is no whole number.
     pub fn wholes<const N: usize>(&self, index: usize, widths: [usize; N]) -> Result<[i64; N]> {
         let text = self.line(index)?;
         let mut numbers = [0; N];
@@ -72,12 +82,18 @@ impl Dataset<'_> {
     }
 
     /// All numbers of a line, NaN where a program could write none.
+    ///
+    /// # Errors
+    /// What is no number.
     pub fn values(&self, index: usize, widths: &[usize]) -> Result<Vec<f64>> {
         let text = self.line(index)?;
         super::record::values(text, widths).map_err(|field| self.fault(index, shown(&field), "a number"))
     }
 
     /// All numbers of a line, finite.
+    ///
+    /// # Errors
+    /// What is no finite number.
     pub fn numbers(&self, index: usize, widths: &[usize]) -> Result<Vec<f64>> {
         let text = self.line(index)?;
         super::record::numbers(text, widths)
@@ -86,7 +102,7 @@ impl Dataset<'_> {
 }
 
 /// A field for a message.
-pub(super) fn shown(field: &str) -> String {
+pub fn shown(field: &str) -> String {
     match field.trim() {
         "" => "nothing".into(),
         field => format!("`{}`", field.chars().take(40).collect::<String>().escape_debug()),

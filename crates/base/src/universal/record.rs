@@ -1,9 +1,9 @@
 //! Fields of a record as Fortran writes and reads them.
 
-use stridor_base::numbers::parse;
+use crate::numbers::parse;
 
 /// The fields of a line: between white space where there are as many as `widths`, in fixed columns otherwise.
-pub(super) fn fields(text: &str, widths: &[usize]) -> Vec<String> {
+pub fn fields(text: &str, widths: &[usize]) -> Vec<String> {
     let words: Vec<&str> = text.split_whitespace().collect();
     if words.len() == widths.len() {
         return words.into_iter().map(str::to_string).collect();
@@ -12,7 +12,7 @@ pub(super) fn fields(text: &str, widths: &[usize]) -> Vec<String> {
 }
 
 /// The fields of a line in fixed columns, without the blanks about them; empty beyond its end.
-pub(super) fn columns(text: &str, widths: &[usize]) -> Vec<String> {
+pub fn columns(text: &str, widths: &[usize]) -> Vec<String> {
     let mut letters = text.chars();
     let mut field = |width: &usize| letters.by_ref().take(*width).collect::<String>().trim().to_string();
     widths.iter().map(&mut field).collect()
@@ -20,7 +20,7 @@ pub(super) fn columns(text: &str, widths: &[usize]) -> Vec<String> {
 
 /// Every number of a line: between white space, or in columns of these widths, over and over, where numbers touch. What a
 /// program writes in the place of a number, such as `NaN` or Fortran's `*****`, is NaN.
-pub(super) fn values(text: &str, widths: &[usize]) -> Result<Vec<f64>, String> {
+pub fn values(text: &str, widths: &[usize]) -> Result<Vec<f64>, String> {
     let words: Option<Vec<f64>> = text.split_whitespace().map(value).collect();
     if let Some(words) = words {
         return Ok(words);
@@ -31,7 +31,7 @@ pub(super) fn values(text: &str, widths: &[usize]) -> Result<Vec<f64>, String> {
 }
 
 /// The same where every number is finite.
-pub(super) fn numbers(text: &str, widths: &[usize]) -> Result<Vec<f64>, String> {
+pub fn numbers(text: &str, widths: &[usize]) -> Result<Vec<f64>, String> {
     let numbers = values(text, widths)?;
     match numbers.iter().find(|number| !number.is_finite()) {
         Some(number) => Err(number.to_string()),
@@ -50,18 +50,18 @@ fn value(text: &str) -> Option<f64> {
 }
 
 /// A finite number with an exponent in E or D, or in neither as Fortran writes `1.5-103`.
-pub(super) fn float(text: &str) -> Option<f64> {
+pub fn float(text: &str) -> Option<f64> {
     parse(text.trim()).filter(|x| x.is_finite())
 }
 
 /// A whole number, also written as `12.`; zero where nothing is written.
-pub(super) fn whole(text: &str) -> Option<i64> {
+pub fn whole(text: &str) -> Option<i64> {
     let text = text.trim();
     if text.is_empty() { Some(0) } else { text.strip_suffix('.').unwrap_or(text).parse().ok() }
 }
 
 /// A number in Fortran's E format: ` 1.66123E+03`.
-pub(super) fn e_format(x: f64, width: usize, digits: usize) -> String {
+pub fn e_format(x: f64, width: usize, digits: usize) -> String {
     let plain = format!("{x:.digits$e}");
     let (mantissa, exponent) = plain.split_once('e').unwrap_or((&plain, "0"));
     let exponent: i32 = exponent.parse().unwrap_or(0);
@@ -71,7 +71,7 @@ pub(super) fn e_format(x: f64, width: usize, digits: usize) -> String {
 }
 
 /// A line of 80 columns; what is not ASCII is left out.
-pub(super) fn text_line(text: &str) -> String {
+pub fn text_line(text: &str) -> String {
     let text: String = text.chars().filter(|c| c.is_ascii() && !c.is_ascii_control()).take(80).collect();
     // A line of text may not be blank.
     let text = if text.trim().is_empty() { "NONE" } else { &text };
