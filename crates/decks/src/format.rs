@@ -10,6 +10,8 @@ use stridor_base::error::{Error, Fault, Result, nearest};
 pub enum Format {
     /// Input files of Abaqus and CalculiX.
     Abaqus,
+    /// Bulk data decks of NASTRAN.
+    Nastran,
 }
 
 /// A row of the table of formats.
@@ -23,8 +25,15 @@ struct Row {
 }
 
 /// All of them.
-const FORMATS: &[Row] =
-    &[Row { format: Format::Abaqus, name: "abaqus", endings: &["inp"], read: crate::abaqus::read }];
+const FORMATS: &[Row] = &[
+    Row { format: Format::Abaqus, name: "abaqus", endings: &["inp"], read: crate::abaqus::read },
+    Row {
+        format: Format::Nastran,
+        name: "nastran",
+        endings: &["bdf", "dat", "nas", "fem", "pch", "blk"],
+        read: crate::nastran::read,
+    },
+];
 
 impl Format {
     /// The row of the table.

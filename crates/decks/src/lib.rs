@@ -12,6 +12,7 @@ mod convert;
 mod deck;
 mod format;
 mod ledger;
+mod nastran;
 mod text;
 
 pub use convert::{Converted, Units, convert};

@@ -1,0 +1,1 @@
+//! Small decks, one for each form and concept.
