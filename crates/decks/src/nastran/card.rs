@@ -146,12 +146,12 @@ impl Card {
             // A list may be longer than a line.
             used = (fields.len() as u32).max(1).div_ceil(width as u32) * width as u32;
             for (k, field) in fields.iter().enumerate() {
-                self.put(start + k as u32, field);
+                self.put(start.saturating_add(k as u32), field);
             }
         } else {
             let columns = if large { 16 } else { 8 };
             for k in 0..width {
-                self.put(start + k, line.columns(8 + k as usize * columns, columns));
+                self.put(start.saturating_add(k), line.columns(8 + k as usize * columns, columns));
             }
         }
         self.next = start.saturating_add(used);
@@ -177,6 +177,13 @@ impl Card {
     /// Its fields that are not blank: number and text.
     pub fn fields(&self) -> impl Iterator<Item = (usize, &str)> {
         self.spans.iter().map(|span| (span.number as usize, self.of(*span)))
+    }
+
+    /// Those from `first` to `last`: the place of the first of them, and number and text of each.
+    pub fn between(&self, first: usize, last: usize) -> (usize, Vec<(usize, &str)>) {
+        let start = self.spans.partition_point(|span| (span.number as usize) < first);
+        let of = self.spans[start..].iter().take_while(|span| span.number as usize <= last);
+        (start, of.map(|span| (span.number as usize, self.of(*span))).collect())
     }
 
     fn of(&self, span: Span) -> &str {
@@ -239,23 +246,26 @@ mod tests {
             &["GRID,12345678,,-1.5-3,121.6843", ",7"],
             &["GRID, 12345678 ,,-1.5-3,121.6843,,,,,+X", "+X,7"],
             &["GRID,12345678,,-1.5-3,121.6843,,,,", "7"][..1],
-            &["GRID\t12345678\t\t-1.5-3\t121.6843", "+\t7"],
             &[
-                "GRID*   12345678                                        -1.5-3          121.6843        *B",
+                "GRID*   12345678                        -1.5-3          121.6843        *B",
                 "*B",
                 "*       7",
             ],
-            &[
-                "GRID*   12345678                                        -1.5-3          121.6843",
-                "*",
-                "+       7",
-            ],
+            &["GRID*   12345678                        -1.5-3          121.6843", "*", "+       7"],
             &["GRID*,12345678,,-1.5-3,121.6843,*B", "*B", "*,7"],
         ] {
             let found = card(lines);
             let expected = if lines.len() == 1 { &expected[..3] } else { &expected[..] };
             assert_eq!(found, expected, "{lines:?}");
         }
+    }
+
+    #[test]
+    fn tabs_go_to_the_next_field() {
+        assert_eq!(
+            card(&["GRID\t12\t\t-1.5-3\t3.", "+\t7"]),
+            fields(&[(1, "12"), (3, "-1.5-3"), (4, "3."), (9, "7")])
+        );
     }
 
     #[test]

@@ -44,11 +44,9 @@ impl<'a, 'n> Fields<'a, 'n> {
 
     /// Fields that are not blank from `first` to `last`.
     pub fn words(&mut self, first: usize, last: usize) -> Vec<(usize, &'a str)> {
-        let card = self.card;
-        let chosen: Vec<_> =
-            card.fields().enumerate().filter(|(_, (k, _))| (first..=last).contains(k)).collect();
-        chosen.iter().for_each(|(at, _)| self.taken[*at] = true);
-        chosen.into_iter().map(|(_, field)| field).collect()
+        let (start, words) = self.card.between(first, last);
+        self.taken[start..start + words.len()].fill(true);
+        words
     }
 
     /// Notes a fault at a field.

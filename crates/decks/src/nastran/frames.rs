@@ -77,14 +77,19 @@ impl Axes {
         std::array::from_fn(|i| (0..3).map(|k| v[k] * unit[k][i]).sum())
     }
 
-    /// Its directions at a place; on the third axis those of the system itself.
+    /// Whether a place is on its third axis, where the directions of cylinders and spheres are those of the system itself.
+    fn is_on_axis(&self, at: [f64; 3]) -> bool {
+        let [x, y, z] = self.unit.map(|unit| dot(unit, minus(at, self.origin)));
+        x.hypot(y) <= 1e-9 * x.hypot(y).hypot(z)
+    }
+
+    /// Its directions at a place.
     pub fn directions(&self, at: [f64; 3]) -> [[f64; 3]; 3] {
-        let from = minus(at, self.origin);
-        let [x, y, z] = self.unit.map(|unit| dot(unit, from));
-        let r = x.hypot(y);
-        if self.kind == FrameKind::Rectangular || r <= 1e-9 * r.hypot(z) || r == 0.0 {
+        if self.kind == FrameKind::Rectangular || self.is_on_axis(at) {
             return self.unit;
         }
+        let [x, y, z] = self.unit.map(|unit| dot(unit, minus(at, self.origin)));
+        let r = x.hypot(y);
         let (cos, sin) = (x / r, y / r);
         let radial = self.turn(self.unit, [cos, sin, 0.0]);
         let tangential = self.turn(self.unit, [-sin, cos, 0.0]);
@@ -106,10 +111,8 @@ impl Axes {
     pub fn frame(&self, at: [f64; 3]) -> Frame {
         let directions = self.directions(at);
         match self.kind {
-            FrameKind::Rectangular if self.unit == BASIC.unit => Frame::Global,
-            FrameKind::Cylindrical if directions != self.unit => {
-                Frame::Cylindrical([self.origin, self.unit[2]])
-            }
+            FrameKind::Cylindrical if !self.is_on_axis(at) => Frame::Cylindrical([self.origin, self.unit[2]]),
+            _ if directions == BASIC.unit => Frame::Global,
             _ => Frame::Turned(directions),
         }
     }

@@ -24,7 +24,8 @@ pub(super) struct Grids {
     pub table: Table<Grid>,
     standard: (u32, u32, [bool; 6]),
     scalar: Vec<Ids>,
-    scalars: Table<()>,
+    /// The numbers of scalar points as ranges, ascending and apart.
+    scalars: Vec<(u64, u64)>,
 }
 
 impl Grids {
@@ -71,18 +72,20 @@ impl Grids {
 
     pub fn sort(&mut self, notes: &mut Notes) {
         self.table.sort("GRID", notes);
-        for ids in &self.scalar {
-            if let Ids::One(id) = ids {
-                self.scalars.push(*id, Place::default(), ());
+        let mut ranges: Vec<(u64, u64)> = self.scalar.iter().map(Ids::bounds).collect();
+        ranges.sort_unstable();
+        for (first, last) in ranges {
+            match self.scalars.last_mut() {
+                Some((_, end)) if first <= *end => *end = last.max(*end),
+                _ => self.scalars.push((first, last.max(first))),
             }
         }
-        self.scalar.retain(|ids| !matches!(ids, Ids::One(_)));
-        self.scalars.sort("SPOINT", notes);
     }
 
     /// Whether a scalar point has this number.
     pub fn is_scalar(&self, id: u64) -> bool {
-        self.scalars.find(id).is_some() || self.scalar.iter().any(|ids| ids.spans(id))
+        let at = self.scalars.partition_point(|(first, _)| *first <= id);
+        at > 0 && id <= self.scalars[at - 1].1
     }
 
     fn system_number(&self, grid: &Grid) -> u64 {

@@ -109,6 +109,15 @@ pub(super) fn members<T: PartialEq>(
 }
 
 impl Ids {
+    /// The first and the last number that may be of it.
+    pub fn bounds(&self) -> (u64, u64) {
+        match self {
+            Ids::One(id) => (*id, *id),
+            Ids::Range(range) => (range.first, range.last),
+            Ids::All => (0, u64::MAX),
+        }
+    }
+
     /// Whether a number is of it.
     pub fn spans(&self, id: u64) -> bool {
         match self {

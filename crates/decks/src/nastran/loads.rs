@@ -63,12 +63,13 @@ impl Loads {
         let of = |(of, place): &(Vec<(f64, u64)>, Place)| (of.iter().map(|(_, set)| *set).collect(), *place);
         let sums = self.sums.iter().map(|(number, sum)| (*number, of(sum))).collect();
         let chosen = model.control.chosen(Choice::Load, model.notes);
-        let factors =
-            chosen.and_then(|number| self.sums.get(&number)).map(|(of, _)| of.clone()).unwrap_or_default();
+        let mut factors: BTreeMap<u64, f64> = BTreeMap::new();
+        for (factor, set) in chosen.and_then(|number| self.sums.get(&number)).map_or(&[][..], |(of, _)| of) {
+            *factors.entry(*set).or_default() += factor;
+        }
         for number in taken(Choice::Load, "LOAD", &self.sets, &sums, model) {
             // A set that is chosen by itself stands with the factor 1; one may stand in a sum several times.
-            let in_sum: f64 =
-                factors.iter().filter(|(_, set)| *set == number).map(|(factor, _)| factor).sum();
+            let in_sum = factors.get(&number).copied().unwrap_or(0.0);
             let own = if chosen.is_none() || chosen == Some(number) { 1.0 } else { 0.0 };
             for (raw, place) in self.sets.get(&number).into_iter().flatten() {
                 load(raw, own + in_sum, number, *place, model);

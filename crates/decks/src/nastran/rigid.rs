@@ -139,7 +139,8 @@ fn average(fields: &mut Fields) -> Option<Raw> {
         weights.push(fields.real(*start)?);
         let stop = starts.get(k + 1).map_or(end, |next| next - 1);
         // Blank fields may stand between.
-        let Some((component, _)) = words.iter().find(|(at, _)| at > start && *at <= stop) else { continue };
+        let after = words.partition_point(|(at, _)| at <= start);
+        let Some((component, _)) = words.get(after).filter(|(at, _)| *at <= stop) else { continue };
         let own = fields.components(*component)?;
         if own[..3] != [true; 3] || own[3..].contains(&true) {
             fields.note(

@@ -37,7 +37,7 @@ pub(super) fn resolve(
         };
         of.entry(key).or_default().push(at);
     }
-    let mut names = BTreeSet::new();
+    let mut names = BTreeMap::new();
     let mut missing = BTreeSet::new();
     for (key, members) in of {
         let (class, number, rod, _) = key;
@@ -103,14 +103,16 @@ fn class(kind: CellKind, name: &str) -> Class {
     }
 }
 
-/// A name that no other has, in any case of its letters.
-fn free_name(name: String, names: &mut BTreeSet<String>) -> String {
+/// A name that no other has, in any case of its letters: of several with one name the others are counted.
+fn free_name(name: String, names: &mut BTreeMap<String, usize>) -> String {
+    let mut count = names.get(&name.to_uppercase()).copied().unwrap_or(0);
     let mut free = name.clone();
-    let mut k = 2;
-    while !names.insert(free.to_uppercase()) {
-        free = format!("{name}_{k}");
-        k += 1;
+    while names.contains_key(&free.to_uppercase()) {
+        count += 1;
+        free = format!("{name}_{count}");
     }
+    names.insert(free.to_uppercase(), 1);
+    names.insert(name.to_uppercase(), count.max(1));
     free
 }
 

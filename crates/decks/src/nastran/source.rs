@@ -66,6 +66,14 @@ impl<'a, 'n> Source<'a, 'n> {
         };
         source.text(path, file, &text);
         source.end_card();
+        if matches!(source.section, Section::Executive | Section::Case) {
+            let place = Place { file, line: text.lines().count() as u32 };
+            source.notes.files.fault(
+                place,
+                "the end of a deck without BEGIN BULK",
+                "BEGIN BULK before the bulk data",
+            );
+        }
         Ok(source)
     }
 

@@ -171,11 +171,14 @@ fn surface(
         match part {
             Part::Elements(ids) => whole.extend(model.elements(ids, card, *place)),
             Part::Properties(ids) => {
-                for (_, members) in
-                    of_property.iter().filter(|(number, _)| ids.iter().any(|ids| ids.spans(**number)))
-                {
-                    if model.notes.may_list(members.len(), *place) {
-                        whole.extend(members);
+                for ids in ids {
+                    let (first, last) = ids.bounds();
+                    // A range from a number to a smaller one has none.
+                    let of = of_property.range(first..=last.max(first));
+                    for (_, members) in of.filter(|(number, _)| ids.spans(**number)) {
+                        if model.notes.may_list(members.len(), *place) {
+                            whole.extend(members);
+                        }
                     }
                 }
             }
