@@ -1,8 +1,10 @@
 //! Elements with a shape: solids, shells, beams and rods.
 
-use super::fields::{Fields, real};
+use super::axis::Axis;
+use super::fields::Fields;
 use super::model::Model;
 use super::table::Table;
+use super::turn;
 use crate::deck::{Element, Place};
 use crate::ledger::Weight;
 use std::collections::BTreeMap;
@@ -25,13 +27,6 @@ pub(super) enum Of {
     Property(u64),
     /// Material and area of CONROD.
     Rod(u64, f64),
-}
-
-/// The plane of bending of a beam: with a direction in the system of the displacements of its first node, or towards a grid point.
-#[derive(Debug, Clone, PartialEq)]
-enum Axis {
-    Vector([f64; 3]),
-    Point(u64),
 }
 
 #[derive(Debug, Default)]
@@ -66,7 +61,7 @@ impl Elements {
         match name {
             "BAROR" | "BEAMOR" => {
                 let property = fields.id_or(2, 0)?;
-                let axis = axis(fields)?;
+                let axis = Axis::read(fields)?;
                 self.standard.insert(if name == "BAROR" { "CBAR" } else { "CBEAM" }, (property, axis));
                 return Some(());
             }
@@ -92,7 +87,7 @@ impl Elements {
         match name {
             "CBAR" | "CBEAM" => {
                 let by_default = standard.and_then(|(_, axis)| axis.clone());
-                plane = axis(fields)?.or(by_default).map(Box::new);
+                plane = Axis::read(fields)?.or(by_default).map(Box::new);
                 fields.unread(
                     8,
                     8,
@@ -143,17 +138,21 @@ impl Elements {
         model.rotates = vec![false; model.deck.nodes.len()];
         for row in table.rows() {
             let name = self.names[row.value.name as usize].as_str();
-            let Some((kind, nodes)) =
+            let Some((kind, mut nodes)) =
                 shape(name, row.number, row.place, &row.value.nodes, &mut middles, model)
             else {
                 model.other_elements.insert(row.number);
                 continue;
             };
+            if turn::right_handed(kind, &mut nodes, |node| model.position(node)) {
+                let why = "nodes of solids that are counted the other way round are turned";
+                model.notes.ledger.note(Weight::Nothing, name, why, row.place);
+            }
             if kind.dimension() < 3 && !matches!(name, "CROD" | "CONROD" | "CTUBE") {
                 nodes.iter().for_each(|node| model.rotates[*node] = true);
             }
             let direction =
-                row.value.axis.as_deref().and_then(|axis| direction(axis, nodes[0], row.place, model));
+                row.value.axis.as_deref().and_then(|axis| axis.direction(nodes[0], name, row.place, model));
             self.made_of.push((row.value.of.clone(), direction));
             model.elements.push(row.number, row.place, ());
             let element =
@@ -193,35 +192,6 @@ fn shell_fields(fields: &mut Fields, name: &str, nodes: usize) {
         Weight::Matters,
         "thicknesses at corners are not read: that of the property holds",
     );
-}
-
-/// The plane of bending in fields 5 to 7; none where they are blank.
-fn axis(fields: &mut Fields) -> Option<Option<Axis>> {
-    let first = fields.word(5);
-    if fields.is_blank(6)
-        && fields.is_blank(7)
-        && !first.contains(['.', '-'])
-        && !first.is_empty()
-        && real(first) != Some(0.0)
-    {
-        return Some(Some(Axis::Point(fields.id(5)?)));
-    }
-    if (5..8).all(|k| fields.is_blank(k)) {
-        return Some(None);
-    }
-    Some(Some(Axis::Vector(fields.vector(5)?)))
-}
-
-/// The direction of the plane of bending of a beam.
-fn direction(axis: &Axis, node: usize, place: Place, model: &mut Model) -> Option<[f64; 3]> {
-    let at = model.position(node);
-    match axis {
-        Axis::Vector(components) => Some(model.displacements(node).vector(*components, at)),
-        Axis::Point(id) => {
-            let other = model.node(*id, "a beam", place)?;
-            Some(stridor_mesh::quality::minus(model.position(other), at))
-        }
-    }
 }
 
 /// The kind of an element, and its nodes in the order of that.

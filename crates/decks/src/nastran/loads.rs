@@ -5,9 +5,9 @@ use super::control::Choice;
 use super::fields::Fields;
 use super::list::{self, Ids};
 use super::model::Model;
-use crate::deck::{Load, LoadOn, Motion, Place, Set};
+use crate::deck::{Deck, Load, LoadOn, Motion, Place, Set};
 use crate::ledger::Weight;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 #[derive(Debug, Default)]
 pub(super) struct Loads {
@@ -71,8 +71,10 @@ impl Loads {
             // A set that is chosen by itself stands with the factor 1; one may stand in a sum several times.
             let in_sum = factors.get(&number).copied().unwrap_or(0.0);
             let own = if chosen.is_none() || chosen == Some(number) { 1.0 } else { 0.0 };
+            let mut alike = Alike::default();
             for (raw, place) in self.sets.get(&number).into_iter().flatten() {
-                load(raw, own + in_sum, number, *place, model);
+                let site = Site { set: number, factor: own + in_sum, place: *place };
+                load(raw, &site, &mut alike, model);
             }
         }
     }
@@ -106,73 +108,100 @@ fn pressure(fields: &mut Fields) -> Option<Raw> {
     Some(Raw::Pressure { elements: vec![elements], pressure: p, corners })
 }
 
-fn load(raw: &Raw, factor: f64, set: u64, place: Place, model: &mut Model) {
-    let name = format!("LOAD_{set}");
-    match raw {
-        Raw::Force { point, system, force } => {
-            let Some(node) = model.node(*point, "FORCE", place) else { return };
-            let Some(axes) = model.frames.get(*system, place, model.notes) else { return };
-            let force = axes.vector(force.map(|x| factor * x), model.position(node));
-            model.deck.loads.push(Load { name, on: LoadOn::Nodes { nodes: vec![node], force }, place });
-        }
-        Raw::Rotation { point, system, axis, turns } => {
-            let Some(axes) = model.frames.get(*system, place, model.notes) else { return };
-            let at = if *point == 0 {
-                Some([0.0; 3])
-            } else {
-                model.node(*point, "RFORCE", place).map(|n| model.position(n))
-            };
-            let Some(at) = at else { return };
-            let axis = axes.vector(*axis, at);
-            let length = stridor_mesh::quality::norm(axis);
-            if length == 0.0 {
-                model.notes.files.fault(
-                    place,
-                    "RFORCE about an axis of no length",
-                    "a direction that is not zero",
-                );
-                return;
-            }
-            // A R revolutions a unit of time.
-            let speed = std::f64::consts::TAU * turns * factor * length;
-            let set = format!("RFORCE_{set}");
-            if model.deck.element_set(&set).is_none() {
-                let members = (0..model.deck.elements.len()).collect();
-                model.deck.element_sets.push(Set { name: set.clone(), members, internal: true });
-            }
-            let axis = axis.map(|x| x / length);
-            model.deck.motions.push(Motion { set, point: at, axis, speed, place });
-        }
-        Raw::Pressure { elements, pressure, corners } => {
-            let mut faces = Vec::new();
-            for element in model.elements(elements, "PLOAD4", place) {
-                if model.deck.elements[element].kind.dimension() != 3 {
-                    let why = "pressures on shells are not read";
-                    model.notes.ledger.note(Weight::Perhaps, "PLOAD4", why, place);
-                    continue;
-                }
-                match side(element, *corners, model) {
-                    Some(side) => faces.push((element, side)),
-                    None => {
-                        let number = model.deck.elements[element].number;
-                        let found = format!(
-                            "PLOAD4 with corners {} and {} of element {number}",
-                            corners[0], corners[1]
-                        );
-                        model.notes.files.fault(
-                            place,
-                            found,
-                            "a corner of a face and the one across from it",
-                        );
-                    }
-                }
-            }
-            if !faces.is_empty() {
-                let pressure = factor * pressure;
-                model.deck.loads.push(Load { name, on: LoadOn::Faces { faces, pressure }, place });
+/// Loads of a set that differ in what they act on only, by their force or pressure.
+#[derive(Default)]
+struct Alike {
+    loads: BTreeMap<[u64; 3], usize>,
+    /// What each acts on already: a node that has a force twice has two loads.
+    on: BTreeSet<(usize, usize, usize)>,
+}
+
+impl Alike {
+    /// Adds a load of these values on a node, or on an element and its side, to one that has them, or as a new one.
+    fn add(
+        &mut self,
+        values: [f64; 3],
+        (thing, side): (usize, usize),
+        on: LoadOn,
+        site: &Site,
+        deck: &mut Deck,
+    ) {
+        let (key, next) = (values.map(f64::to_bits), deck.loads.len());
+        let at = *self.loads.entry(key).or_insert(next);
+        let fresh = self.on.insert((at, thing, side));
+        match (deck.loads.get_mut(at).map(|load| &mut load.on), &on) {
+            (Some(LoadOn::Nodes { nodes, .. }), LoadOn::Nodes { .. }) if fresh => nodes.push(thing),
+            (Some(LoadOn::Faces { faces, .. }), LoadOn::Faces { .. }) if fresh => faces.push((thing, side)),
+            _ => {
+                self.loads.insert(key, next);
+                self.on.insert((next, thing, side));
+                deck.loads.push(Load { name: format!("LOAD_{}", site.set), on, place: site.place });
             }
         }
     }
+}
+
+/// Where a load stands, and its factor.
+struct Site {
+    set: u64,
+    factor: f64,
+    place: Place,
+}
+
+fn load(raw: &Raw, site: &Site, alike: &mut Alike, model: &mut Model) {
+    match raw {
+        Raw::Force { point, system, force } => {
+            let Some(node) = model.node(*point, "FORCE", site.place) else { return };
+            let Some(axes) = model.frames.get(*system, site.place, model.notes) else { return };
+            let force = axes.vector(force.map(|x| site.factor * x), model.position(node));
+            alike.add(force, (node, 0), LoadOn::Nodes { nodes: vec![node], force }, site, &mut model.deck);
+        }
+        Raw::Rotation { point, system, axis, turns } => {
+            let Some(axes) = model.frames.get(*system, site.place, model.notes) else { return };
+            let mut point_on = [0.0; 3];
+            if *point > 0 {
+                let Some(node) = model.node(*point, "RFORCE", site.place) else { return };
+                point_on = model.position(node);
+            }
+            rotation(point_on, axes.vector(*axis, point_on), turns * site.factor, site.place, model);
+        }
+        Raw::Pressure { elements, pressure, corners } => {
+            let pressure = site.factor * pressure;
+            for element in model.elements(elements, "PLOAD4", site.place) {
+                let what = &model.deck.elements[element];
+                if what.kind.dimension() != 3 {
+                    let why = "pressures on shells are not read";
+                    model.notes.ledger.note(Weight::Perhaps, "PLOAD4", why, site.place);
+                } else if let Some(side) = side(element, *corners, model) {
+                    let on = LoadOn::Faces { faces: vec![(element, side)], pressure };
+                    alike.add([pressure, 0.0, 0.0], (element, side), on, site, &mut model.deck);
+                } else {
+                    let [first, second] = corners;
+                    let found =
+                        format!("PLOAD4 with corners {first} and {second} of element {}", what.number);
+                    let expected = "a corner of a face and the one across from it";
+                    model.notes.files.fault(site.place, found, expected);
+                }
+            }
+        }
+    }
+}
+
+/// All elements turn about an axis of length R: so many times R revolutions a unit of time.
+fn rotation(point: [f64; 3], axis: [f64; 3], turns: f64, place: Place, model: &mut Model) {
+    let length = stridor_mesh::quality::norm(axis);
+    if length == 0.0 {
+        let expected = "a direction that is not zero";
+        model.notes.files.fault(place, "RFORCE about an axis of no length", expected);
+        return;
+    }
+    let set = "RFORCE".to_string();
+    if model.deck.element_set(&set).is_none() {
+        let members = (0..model.deck.elements.len()).collect();
+        model.deck.element_sets.push(Set { name: set.clone(), members, internal: true });
+    }
+    let (axis, speed) = (axis.map(|x| x / length), std::f64::consts::TAU * turns * length);
+    model.deck.motions.push(Motion { set, point, axis, speed, place });
 }
 
 /// The side of a solid that two grid points tell: a corner of the face, and the one across from it, or that of a tetrahedron which is not

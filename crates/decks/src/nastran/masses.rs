@@ -3,10 +3,11 @@
 use super::fields::Fields;
 use super::model::Model;
 use super::parameters::Parameters;
-use super::table::Table;
-use crate::deck::PointMass;
+use super::table::{Row, Table};
+use crate::deck::{Coupling, CouplingKind, PointMass};
 use crate::ledger::Weight;
 use std::collections::BTreeSet;
+use stridor_mesh::quality::minus;
 
 /// A mass as its card has it.
 #[derive(Debug, Clone, PartialEq)]
@@ -16,6 +17,9 @@ struct Raw {
     /// The system of its moments of inertia.
     system: u64,
     mass: f64,
+    /// From the grid point to its centre, in that system; of system −1 the place of the centre.
+    offset: [f64; 3],
+    is_place: bool,
     /// The tensor of inertia, symmetric.
     inertia: [[f64; 3]; 3],
 }
@@ -41,6 +45,8 @@ impl Masses {
 
     pub fn resolve(mut self, parameters: &Parameters, model: &mut Model) {
         self.table.sort("mass", model.notes);
+        let references: BTreeSet<usize> =
+            model.deck.couplings.iter().map(|coupling| coupling.reference).collect();
         for row in self.table.rows() {
             let raw = &row.value;
             let Some(node) = model.node(raw.point, raw.card, row.place) else { continue };
@@ -57,6 +63,9 @@ impl Masses {
                 let why = "products of inertia about the directions of the coordinates are not read";
                 model.notes.ledger.note(Weight::Matters, raw.card, why, row.place);
             }
+            let at = model.position(node);
+            let offset = if raw.is_place { minus(raw.offset, at) } else { axes.vector(raw.offset, at) };
+            let node = centre(node, offset, row, &references, model);
             let factor = parameters.mass_factor();
             model.deck.masses.push(PointMass {
                 name: format!("{}_{}", raw.card, row.number),
@@ -69,16 +78,47 @@ impl Masses {
     }
 }
 
+/// The node of the centre of a mass: a new one, which moves with the grid point as a rigid body, where it is beside one that turns.
+fn centre(
+    node: usize,
+    offset: [f64; 3],
+    row: &Row<Raw>,
+    references: &BTreeSet<usize>,
+    model: &mut Model,
+) -> usize {
+    if offset == [0.0; 3] {
+        return node;
+    }
+    let turns = model.rotates.get(node).is_some_and(|turns| *turns) || references.contains(&node);
+    if !turns {
+        let why = "the offset of a mass from a grid point that nothing turns is not read";
+        model.notes.ledger.note(Weight::Matters, row.value.card, why, row.place);
+        return node;
+    }
+    let at = model.position(node);
+    let centre = model.add_node(std::array::from_fn(|k| at[k] + offset[k]), row.place);
+    model.deck.couplings.push(Coupling {
+        name: format!("{}_{}_offset", row.value.card, row.number),
+        reference: node,
+        nodes: vec![centre],
+        of: None,
+        kind: CouplingKind::Rigid,
+        place: row.place,
+    });
+    centre
+}
+
 /// CONM2: mass, offset of its centre, and I₁₁, I₂₁, I₂₂, I₃₁, I₃₂, I₃₃ of which those beside the diagonal are ∫xᵢxⱼ dm.
 fn by_inertia(fields: &mut Fields, point: u64) -> Option<Raw> {
     let system = fields.integer_or(3, 0)?;
+    let is_place = system == -1;
     let mass = fields.real_or(4, 0.0)?;
-    fields.unread(5, 7, Weight::Matters, "the offset of a mass from its grid point is not read");
+    let offset = fields.vector(5)?;
     let [i11, i21, i22, i31, i32, i33] = [9, 10, 11, 12, 13, 14].map(|k| fields.real_or(k, 0.0));
     let (i11, i21, i22, i31, i32, i33) = (i11?, i21?, i22?, i31?, i32?, i33?);
     let inertia = [[i11, -i21, -i31], [-i21, i22, -i32], [-i31, -i32, i33]];
     let system = u64::try_from(system).unwrap_or(0);
-    Some(Raw { card: "CONM2", point, system, mass, inertia })
+    Some(Raw { card: "CONM2", point, system, mass, offset, is_place, inertia })
 }
 
 /// CONM1: the lower triangle of a matrix of six by rows.
@@ -95,5 +135,5 @@ fn by_matrix(fields: &mut Fields, point: u64) -> Option<Raw> {
         );
     }
     let inertia = std::array::from_fn(|i| std::array::from_fn(|j| m[3 + i][3 + j]));
-    Some(Raw { card: "CONM1", point, system, mass, inertia })
+    Some(Raw { card: "CONM1", point, system, mass, offset: [0.0; 3], is_place: false, inertia })
 }

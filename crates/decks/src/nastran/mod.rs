@@ -4,6 +4,7 @@
 //! [`source`] has the sections and files of a deck, [`card`] the fields of a card; a file each has the cards of one concept, first as they stand
 //! with the numbers of what they name, then, once all are read, with these found.
 
+mod axis;
 mod beams;
 mod card;
 mod constraints;
@@ -31,6 +32,7 @@ mod surfaces;
 mod table;
 #[cfg(test)]
 mod tests;
+mod turn;
 mod unread;
 
 use crate::deck::{Deck, Place};

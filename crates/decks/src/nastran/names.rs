@@ -1,4 +1,4 @@
-//! Names that pre-processors write into comments: HyperMesh, ANSA, Femap, Simcenter and Patran.
+//! Names that pre-processors write into comments: HyperMesh, ANSA, Femap, I-DEAS, Simcenter and Patran.
 
 use std::collections::BTreeMap;
 
@@ -23,9 +23,7 @@ pub(super) struct Names {
 impl Names {
     /// A comment, without its `$`.
     pub fn comment(&mut self, comment: &str) {
-        if let Some((what, number, name)) =
-            hypermesh(comment).or_else(|| ansa(comment)).or_else(|| femap(comment))
-        {
+        if let Some((what, number, name)) = by_number(comment) {
             self.by_number.insert((what, number), name);
         } else if let Some((what, name)) = next(comment) {
             self.next.insert(what, name);
@@ -98,13 +96,32 @@ fn femap(comment: &str) -> Option<(Named, u64, String)> {
     Some((what, number.parse().ok()?, named(name)?))
 }
 
+/// `$*  I-DEAS property: 3  name: disc`.
+fn ideas(comment: &str) -> Option<(Named, u64, String)> {
+    let (head, name) = comment.strip_prefix('*')?.trim().strip_prefix("I-DEAS ")?.split_once("name:")?;
+    let (what, number) = head.split_once(':')?;
+    let what = match what.to_ascii_lowercase().as_str() {
+        "property" => Named::Property,
+        "material" => Named::Material,
+        _ => return None,
+    };
+    Some((what, number.trim().parse().ok()?, named(name)?))
+}
+
+/// A name with the number of what has it.
+fn by_number(comment: &str) -> Option<(Named, u64, String)> {
+    hypermesh(comment).or_else(|| ansa(comment)).or_else(|| femap(comment)).or_else(|| ideas(comment))
+}
+
 /// `$*  Simcenter Nastran Property: disc`, `$ Elements and Element Properties for region : disc`, `$ Material Record : steel`.
 fn next(comment: &str) -> Option<(Named, String)> {
     let (head, name) = comment.split_once(':')?;
-    let head = head.trim_start_matches('*').trim();
-    let what = match head {
-        _ if head.ends_with("Property") || head.ends_with("Properties for region") => Named::Property,
-        _ if head.ends_with("Material") || head == "Material Record" => Named::Material,
+    let what = match head.strip_prefix('*') {
+        Some(head) if head.trim().starts_with("I-DEAS") => return None,
+        Some(head) if head.trim_end().ends_with("Property") => Named::Property,
+        Some(head) if head.trim_end().ends_with("Material") => Named::Material,
+        None if head.trim() == "Elements and Element Properties for region" => Named::Property,
+        None if head.trim() == "Material Record" => Named::Material,
         _ => return None,
     };
     Some((what, named(name)?))

@@ -1,5 +1,6 @@
 //! Springs and dashpots: CELAS1, CELAS2, CDAMP1, CDAMP2, CBUSH, CBUSH1D, and their properties.
 
+use super::axis::Axis;
 use super::fields::Fields;
 use super::model::Model;
 use super::table::Table;
@@ -44,12 +45,6 @@ enum How {
         axis: Option<Axis>,
     },
     Line,
-}
-
-#[derive(Debug, Clone, PartialEq)]
-enum Axis {
-    Vector([f64; 3]),
-    Point(u64),
 }
 
 /// Stiffnesses and dampings of the six degrees of freedom; of a spring of one, the first.
@@ -144,13 +139,7 @@ impl Springs {
     fn bush(&mut self, fields: &mut Fields) -> Option<()> {
         let (number, property) = (fields.id(1)?, fields.id_or(2, 0)?);
         let ends = [fields.id(3)?, fields.id_or(4, 0)?];
-        let first = fields.word(5);
-        let point = fields.is_blank(6) && fields.is_blank(7) && !first.is_empty() && !first.contains('.');
-        let axis = match () {
-            _ if (5..8).all(|k| fields.is_blank(k)) => None,
-            _ if point => Some(Axis::Point(fields.id(5)?)),
-            _ => Some(Axis::Vector(fields.vector(5)?)),
-        };
+        let axis = Axis::read(fields)?;
         let system = if fields.is_blank(8) { None } else { Some(fields.id_or(8, 0)?) };
         if (fields.real_or(9, 0.5)? - 0.5).abs() > 1e-9 || !fields.is_blank(10) && fields.word(10) != "-1" {
             fields.note(Weight::Perhaps, "the place of the spring between its ends is not read");
@@ -324,11 +313,7 @@ fn directions(
     }
     let e1 = site.line.map(|x| x / along);
     let beside = match axis {
-        Some(Axis::Vector(v)) => Some(model.displacements(a).vector(v, at)),
-        Some(Axis::Point(id)) => {
-            let point = model.node(id, site.card, site.place)?;
-            Some(minus(model.position(point), at))
-        }
+        Some(axis) => Some(axis.direction(a, site.card, site.place, model)?),
         None => None,
     };
     let across = |of: &[f64; 6]| (0..6).any(|k| k % 3 != 0 && of[k] != 0.0);

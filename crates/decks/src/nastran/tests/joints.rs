@@ -105,6 +105,17 @@ fn averages_have_their_nodes() {
     );
 }
 
+/// Equal forces of a set are one load; a node that has one twice has two.
+#[test]
+fn equal_forces_are_one_load() {
+    let force = |node: usize| format!("FORCE,1,{node},0,2.,0.,0.,1.\n");
+    let found =
+        deck(&format!("{CUBE}{}{}{}{}FORCE,1,4,0,3.,0.,0.,1.\n", force(1), force(2), force(1), force(3)));
+    let loads: Vec<_> = found.loads.iter().map(|load| load.on.clone()).collect();
+    let on = |nodes: &[usize], force: f64| LoadOn::Nodes { nodes: nodes.to_vec(), force: [0.0, 0.0, force] };
+    assert_eq!(loads, [on(&[0, 1], 2.0), on(&[0, 2], 2.0), on(&[3], 3.0)]);
+}
+
 #[test]
 fn pressures_and_rotations() {
     // The top of the cube: corners 5 and 7; all of a range, of which none but the first says a face.

@@ -107,6 +107,20 @@ fn sections_have_the_names_of_their_properties() {
     assert_eq!((steel.density, steel.rayleigh), (Some(3900.0), [0.0, 1e-6]));
     assert!(close(steel.loss_factor, 0.03));
     assert_eq!(deck(CUBE).element_set("PSOLID_3").unwrap().members, [0]);
+    for (comment, name) in [
+        ("$ Femap Property 3 : pad\n", "pad"),
+        ("$*  I-DEAS property: 3  name: BACK PLATE\n", "BACK PLATE"),
+        ("$HMNAME PROP 3\"a\"\n$HMNAME PROP 4\"a\"\n", "a_3"),
+        ("$ANSA_NAME_COMMENT;3;PSOLID;lining;;NO;\n", "lining"),
+    ] {
+        assert!(deck(&format!("{comment}{CUBE}")).element_set(name).is_some(), "{name}");
+    }
+    let before = CUBE.replace("PSOLID", "$ Elements and Element Properties for region : hub\nPSOLID");
+    assert_eq!(
+        deck(&before.replace("MAT1", "$ Description of Material : Date: 1\nMAT1")).sections[0].name,
+        "hub"
+    );
+    assert_eq!(deck(&before).sections[0].material, "MAT1_5");
 }
 
 /// The stiffness of MAT9 gives back the engineering constants that it is made of.
@@ -175,6 +189,30 @@ fn profiles_have_their_moments() {
         "GRID,1\nGRID,2,,1.,0.,0.\nCBAR,1,1,1,2,0.,2.,0.\nPBARL,1,1,,HAT\n,1.,2.,3.,4.\nMAT1,1,1.,,.3\n",
     );
     assert!(found.sections.is_empty() && notes(&found, Weight::Matters, "PBARL", "HAT"));
+}
+
+/// A mass beside a point that a beam turns is at a node of its own, which follows that point; the tensor of a turned system is turned.
+#[test]
+fn masses_may_be_beside_their_points() {
+    let text = "\
+GRID,1
+GRID,2,,1.,0.,0.
+CBAR,1,1,1,2,0.,1.,0.
+PBAR,1,1,1.,1.,1.,1.
+MAT1,1,1.,,.3
+CONM2,5,2,,3.,0.,2.,0.
+CONM2,6,1,-1,4.,0.,0.,7.
+";
+    let found = deck(text);
+    let places: Vec<_> =
+        found.masses.iter().map(|mass| (found.nodes[mass.nodes[0]].position, mass.mass)).collect();
+    assert_eq!(places, [([1.0, 2.0, 0.0], 3.0), ([0.0, 0.0, 7.0], 4.0)]);
+    let links: Vec<_> =
+        found.couplings.iter().map(|link| (link.reference, link.nodes.clone(), link.kind)).collect();
+    assert_eq!(links, [(1, vec![2], CouplingKind::Rigid), (0, vec![3], CouplingKind::Rigid)]);
+    let found = deck(&format!("{CUBE}CONM2,5,2,,3.,0.,2.,0.\n"));
+    assert_eq!(found.masses[0].nodes, [1]);
+    assert!(notes(&found, Weight::Matters, "CONM2", "offset"));
 }
 
 #[test]
