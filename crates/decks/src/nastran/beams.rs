@@ -7,19 +7,20 @@ use crate::deck::Profile;
 use crate::ledger::Weight;
 use std::f64::consts::PI;
 
-/// Material and profile of PBAR, PBARL, PBEAM or PBEAML.
-pub(super) fn profile(fields: &mut Fields) -> Option<(u64, Profile)> {
+/// Material, profile, and mass that stiffens nothing of PBAR, PBARL, PBEAM or PBEAML.
+pub(super) fn profile(fields: &mut Fields) -> Option<(u64, Profile, f64)> {
     let material = fields.id(2)?;
     let name = fields.name();
     if name.ends_with('L') {
-        return Some((material, by_dimensions(fields)?));
+        let (profile, carried) = by_dimensions(fields)?;
+        return Some((material, profile, carried));
     }
     let area = fields.real(3)?;
     let second_moments = [fields.real_or(4, 0.0)?, fields.real_or(5, 0.0)?];
     // PBEAM has I12 before J.
     let torsion_at = if name == "PBAR" { 6 } else { 7 };
     let torsion = fields.real_or(torsion_at, 0.0)?;
-    fields.unread(torsion_at + 1, torsion_at + 1, Weight::Matters, "mass that carries nothing is not read");
+    let carried = fields.real_or(torsion_at + 1, 0.0)?;
     if name == "PBAR" {
         fields.unread(9, 16, Weight::Nothing, "places where stresses are wanted");
         fields.unread(17, 18, Weight::Perhaps, "factors of shear are not read");
@@ -43,12 +44,12 @@ pub(super) fn profile(fields: &mut Fields) -> Option<(u64, Profile)> {
             fields.unread(17, last, Weight::Matters, why);
         }
     }
-    Some((material, Profile::General { area, second_moments, torsion }))
+    Some((material, Profile::General { area, second_moments, torsion }, carried))
 }
 
 /// A profile by its kind and dimensions. Source of the kinds: PBARL in the Quick Reference Guide; torsion of the full rectangle
 /// J = a b³ (1/3 − 0.21 b/a (1 − b⁴/(12 a⁴))), of the thin-walled box 4 A²/∮ds/t and of thin open sections Σ b t³/3: Young, *Roark's Formulas for Stress and Strain*, table 10.1.
-fn by_dimensions(fields: &mut Fields) -> Option<Profile> {
+fn by_dimensions(fields: &mut Fields) -> Option<(Profile, f64)> {
     let kind = fields.word(4);
     fields.unread(3, 3, Weight::Nothing, "the group of profiles is not read");
     let mut dimension = |k: usize| fields.real(8 + k);
@@ -106,7 +107,7 @@ fn by_dimensions(fields: &mut Fields) -> Option<Profile> {
         }
     };
     let last = fields.last();
-    fields.unread(9 + n, 9 + n, Weight::Matters, "mass that carries nothing is not read");
+    let carried = fields.real_or(9 + n, 0.0)?;
     if last > 9 + n {
         fields.unread(
             10 + n,
@@ -115,5 +116,5 @@ fn by_dimensions(fields: &mut Fields) -> Option<Profile> {
             "stations along a beam are not read: the section of its first end holds",
         );
     }
-    Some(profile)
+    Some((profile, carried))
 }

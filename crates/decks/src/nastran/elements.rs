@@ -108,7 +108,7 @@ impl Elements {
     fn rod_fields(&self, fields: &mut Fields, first: usize) {
         fields.unread(first, first, Weight::Perhaps, "torsion of rods is not read");
         fields.unread(first + 1, first + 1, Weight::Nothing, "places where stresses are wanted");
-        fields.unread(first + 2, first + 2, Weight::Matters, "mass that carries nothing is not read");
+        fields.unread(first + 2, first + 2, Weight::Matters, "mass that stiffens nothing is not read");
     }
 
     fn push(

@@ -4,6 +4,7 @@ use super::fields::Fields;
 use super::model::Model;
 use super::names::{Named, Names};
 use super::parameters::Parameters;
+use super::sections::Heavier;
 use super::table::Table;
 use crate::deck::{Elastic, Material};
 use crate::ledger::Weight;
@@ -74,16 +75,23 @@ impl Materials {
     }
 
     /// Puts them into the deck, with the damping that holds for all.
-    pub fn resolve(&self, parameters: &Parameters, model: &mut Model) {
+    pub fn resolve(&self, heavier: Vec<Heavier>, parameters: &Parameters, model: &mut Model) {
+        let material = |name: String, raw: &Raw, density: Option<f64>| Material {
+            name,
+            elastic: raw.elastic,
+            density: density.map(|density| density * parameters.mass_factor()),
+            rayleigh: parameters.rayleigh(),
+            loss_factor: raw.loss_factor + parameters.loss_factor(),
+        };
         for row in self.table.rows() {
-            let material = Material {
-                name: model.names.of(Named::Material, row.number, &row.value.card),
-                elastic: row.value.elastic,
-                density: row.value.density.map(|density| density * parameters.mass_factor()),
-                rayleigh: parameters.rayleigh(),
-                loss_factor: row.value.loss_factor + parameters.loss_factor(),
-            };
-            model.deck.materials.push(material);
+            let name = model.names.of(Named::Material, row.number, &row.value.card);
+            model.deck.materials.push(material(name, &row.value, row.value.density));
+        }
+        for Heavier { name, number, density } in heavier {
+            if let Some(row) = self.table.get(number) {
+                let density = row.value.density.unwrap_or(0.0) + density;
+                model.deck.materials.push(material(name, &row.value, Some(density)));
+            }
         }
     }
 }

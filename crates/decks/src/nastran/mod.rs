@@ -182,8 +182,8 @@ impl Bulk {
         self.springs.numbers(&mut model.other_elements);
         self.masses.numbers(&mut model.other_elements);
         elements.resolve(&mut model);
-        sections::resolve(&elements, &properties, &materials, &unread, &mut model);
-        materials.resolve(&parameters, &mut model);
+        let heavier = sections::resolve(&elements, &properties, &materials, &unread, &mut model);
+        materials.resolve(heavier, &parameters, &mut model);
         let surfaces = self.surfaces.resolve(&elements, &mut model);
         self.contact.resolve(&surfaces, &mut model);
         self.constraints.resolve(&mut model);

@@ -13,6 +13,8 @@ pub(super) struct Property {
     /// The name of its card.
     pub card: String,
     pub material: u64,
+    /// Mass that stiffens nothing, of an area of a shell or a length of a beam.
+    pub carried: f64,
     pub shape: SectionShape,
     /// The system of the directions of the material of a solid; −1 is that of the element.
     pub system: i64,
@@ -34,8 +36,6 @@ pub(super) struct Properties {
     beams: Table<Property>,
     rods: Table<Property>,
 }
-
-const NO_CARRYING: &str = "mass that carries nothing is not read";
 
 impl Properties {
     fn table(&mut self, class: Class) -> &mut Table<Property> {
@@ -74,7 +74,7 @@ impl Properties {
     pub fn card(&mut self, fields: &mut Fields) -> Option<()> {
         let name = fields.name();
         let number = fields.id(1)?;
-        let mut system = 0;
+        let (mut system, mut carried) = (0, 0.0);
         let (class, material, shape) = match name {
             "PSOLID" => {
                 let material = fields.id(2)?;
@@ -110,13 +110,14 @@ impl Properties {
                     fields
                         .note(Weight::Perhaps, "the factor of shear thickness, TS/T, is not read: it is 5/6");
                 }
-                fields.unread(8, 8, Weight::Matters, NO_CARRYING);
+                carried = fields.real_or(8, 0.0)?;
                 fields.unread(9, 10, Weight::Nothing, "places where stresses are wanted");
                 fields.unread(11, 11, Weight::Matters, "coupling of membrane and bending is not read");
                 let material = if membrane > 0 { membrane } else { bending.unsigned_abs() };
                 (Class::Shell, material, SectionShape::Shell { thickness })
             }
             "PCOMP" => {
+                carried = fields.real_or(3, 0.0)?;
                 let (material, thickness) = layers(fields)?;
                 (Class::Shell, material, SectionShape::Shell { thickness })
             }
@@ -125,10 +126,10 @@ impl Properties {
                 let area = if name == "PROD" {
                     fields.unread(4, 4, Weight::Perhaps, "torsion of rods is not read");
                     fields.unread(5, 5, Weight::Nothing, "places where stresses are wanted");
-                    fields.unread(6, 6, Weight::Matters, NO_CARRYING);
+                    carried = fields.real_or(6, 0.0)?;
                     fields.real(3)?
                 } else {
-                    fields.unread(5, 5, Weight::Matters, NO_CARRYING);
+                    carried = fields.real_or(5, 0.0)?;
                     fields.unread(6, 6, Weight::Matters, "a tube whose end is wider is not read");
                     let (outer, wall) = (fields.real(3)?, fields.real_or(4, 0.0)?);
                     let inner = if wall == 0.0 { 0.0 } else { outer - 2.0 * wall };
@@ -137,12 +138,17 @@ impl Properties {
                 (Class::Rod, material, SectionShape::Truss { area })
             }
             _ => {
-                let (material, profile) = beams::profile(fields)?;
+                let (material, profile, of_length) = beams::profile(fields)?;
+                carried = of_length;
                 (Class::Beam, material, SectionShape::Beam { profile, first_axis: None })
             }
         };
         let place = fields.place();
-        self.table(class).push(number, place, Property { card: name.to_string(), material, shape, system });
+        self.table(class).push(
+            number,
+            place,
+            Property { card: name.to_string(), material, carried, shape, system },
+        );
         Some(())
     }
 }
@@ -150,7 +156,6 @@ impl Properties {
 /// Material and thickness of layers of one material; others are noted, and the first material has the whole thickness.
 fn layers(fields: &mut Fields) -> Option<(u64, f64)> {
     fields.unread(2, 2, Weight::Matters, "the offset of its layers is not read");
-    fields.unread(3, 3, Weight::Matters, NO_CARRYING);
     fields.unread(4, 6, Weight::Nothing, "strength and reference temperature are not read");
     fields.unread(7, 7, Weight::Perhaps, "damping of layers is not read");
     let twice = match fields.word(8) {

@@ -14,14 +14,23 @@ use stridor_mesh::CellKind;
 /// What tells the elements of a section apart: what they are made of, and of beams the direction of their plane of bending.
 type Key = (Class, u64, Option<(u64, u64)>, Option<[i64; 3]>);
 
-/// Puts sections and sets of their elements into the deck.
+/// A material whose density is higher by what elements carry.
+pub(super) struct Heavier {
+    pub name: String,
+    pub number: u64,
+    /// What is added.
+    pub density: f64,
+}
+
+/// Puts sections and sets of their elements into the deck; materials that they need beside those of the cards are the result.
 pub(super) fn resolve(
     elements: &Elements,
     properties: &Properties,
     materials: &Materials,
     unread: &Unread,
     model: &mut Model,
-) {
+) -> Vec<Heavier> {
+    let mut heavier = Vec::new();
     let mut of: BTreeMap<Key, Vec<usize>> = BTreeMap::new();
     for (at, (made_of, direction)) in elements.made_of.iter().enumerate() {
         let name = type_name(model, at);
@@ -47,7 +56,10 @@ pub(super) fn resolve(
             Some((material, area)) => {
                 let shape = SectionShape::Truss { area: f64::from_bits(area) };
                 let number = model.deck.elements[first].number;
-                (Property { card: "CONROD".into(), material, shape, system: 0 }, format!("CONROD_{number}"))
+                (
+                    Property { card: "CONROD".into(), material, carried: 0.0, shape, system: 0 },
+                    format!("CONROD_{number}"),
+                )
             }
             None => match properties.get(class, number) {
                 Some(property) => (property.clone(), model.names.of(Named::Property, number, &property.card)),
@@ -73,7 +85,7 @@ pub(super) fn resolve(
         };
         let name = free_name(name, &mut names);
         model.deck.element_sets.push(Set { name: name.clone(), members: members.clone(), internal: false });
-        let Some(material) = materials.name(property.material, model.names) else {
+        let Some(mut material) = materials.name(property.material, model.names) else {
             if !unread.materials.contains(&property.material) {
                 let found = format!("material {} of {name}, which is not there", property.material);
                 model.notes.files.fault(place, found, "the number of a material card");
@@ -84,10 +96,24 @@ pub(super) fn resolve(
         if let SectionShape::Beam { first_axis, .. } = &mut shape {
             *first_axis = elements.made_of[first].1;
         }
+        let size = match &shape {
+            SectionShape::Shell { thickness } => *thickness,
+            SectionShape::Truss { area } => *area,
+            SectionShape::Beam { profile, .. } => profile.area(),
+            SectionShape::Solid => 0.0,
+        };
+        if property.carried != 0.0 && size > 0.0 {
+            let why = "mass that stiffens nothing is read as a higher density of the material";
+            model.notes.ledger.note(Weight::Nothing, property.card.as_str(), why, place);
+            material = format!("{material} of {name}");
+            let density = property.carried / size;
+            heavier.push(Heavier { name: material.clone(), number: property.material, density });
+        }
         let turned = materials.is_isotropic(property.material);
         let axes = if turned { None } else { axes(&property, place, model) };
         model.deck.sections.push(Section { name, elements: members, material, axes, shape, place });
     }
+    heavier
 }
 
 fn type_name<'m>(model: &'m Model, element: usize) -> &'m str {

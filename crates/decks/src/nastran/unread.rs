@@ -96,7 +96,7 @@ const KINDS: &[(&str, Weight, &str)] = &[
     ("SEQGP", Weight::Nothing, "orders of equations are not read"),
     ("SE", Weight::Matters, "superelements are not read"),
     ("CSUPER", Weight::Matters, "superelements are not read"),
-    ("NSM", Weight::Matters, "mass that carries nothing is not read"),
+    ("NSM", Weight::Matters, "mass that stiffens nothing is not read"),
     ("PARAM", Weight::Perhaps, "not read"),
     ("C", Weight::Matters, "elements of this kind are not read"),
     ("P", Weight::Matters, "properties of this kind are not read"),

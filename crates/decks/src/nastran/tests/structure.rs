@@ -123,6 +123,17 @@ fn sections_have_the_names_of_their_properties() {
     assert_eq!(deck(&before).sections[0].material, "MAT1_5");
 }
 
+/// Mass that a shell carries, 3 on an area of thickness 0.02, is a density of 150 more of its own material.
+#[test]
+fn carried_mass_is_a_higher_density() {
+    let found = deck(&format!("{CUBE}CQUAD4,11,4,1,2,3,4\nPSHELL,4,5,.02,5,,5,,3.\nPARAM,WTMASS,.5\n"));
+    let density =
+        |name: &str| found.materials.iter().find(|material| material.name == name).and_then(|m| m.density);
+    assert_eq!((found.sections[0].material.as_str(), density("MAT1_5")), ("MAT1_5", Some(3925.0)));
+    assert_eq!(found.sections[1].material, "MAT1_5 of PSHELL_4");
+    assert!(close(density("MAT1_5 of PSHELL_4").unwrap() / 4000.0, 1.0));
+}
+
 /// The stiffness of MAT9 gives back the engineering constants that it is made of.
 #[test]
 fn stiffness_is_inverted() {
