@@ -80,7 +80,7 @@ impl Loads {
     }
 }
 
-/// PLOAD4: pressures at the corners of a face, which corners of a solid tell; of a range of elements where THRU stands.
+/// PLOAD4: pressures at the corners of a face, which corners of a solid name; of a range of elements where THRU stands.
 fn pressure(fields: &mut Fields) -> Option<Raw> {
     let first = fields.id(2)?;
     let p = fields.real_or(3, 0.0)?;
@@ -204,7 +204,7 @@ fn rotation(point: [f64; 3], axis: [f64; 3], turns: f64, place: Place, model: &m
     model.deck.motions.push(Motion { set, point, axis, speed, place });
 }
 
-/// The side of a solid that two grid points tell: a corner of the face, and the one across from it, or that of a tetrahedron which is not
+/// The side of a solid that two grid points name: a corner of the face, and the one across from it, or that of a tetrahedron which is not
 /// on it.
 pub(super) fn side(element: usize, [first, second]: [u64; 2], model: &Model) -> Option<usize> {
     let element = &model.deck.elements[element];

@@ -11,7 +11,7 @@ use crate::ledger::Weight;
 use std::collections::{BTreeMap, BTreeSet};
 use stridor_mesh::CellKind;
 
-/// What tells the elements of a section apart: what they are made of, and of beams the direction of their plane of bending.
+/// What elements of one section have in common: what they are made of, and of beams the direction of their plane of bending.
 type Key = (Class, u64, Option<(u64, u64)>, Option<[i64; 3]>);
 
 /// A material whose density is higher by what elements carry.
