@@ -14,6 +14,8 @@ pub enum Format {
     Ansys,
     /// Universal files.
     Universal,
+    /// Bulk data decks of NASTRAN.
+    Nastran,
 }
 
 /// A row of the table of formats.
@@ -35,6 +37,12 @@ const FORMATS: &[Row] = &[
         name: "universal",
         endings: &["unv", "uff"],
         read: crate::universal::read,
+    },
+    Row {
+        format: Format::Nastran,
+        name: "nastran",
+        endings: &["bdf", "dat", "nas", "fem", "pch", "blk"],
+        read: crate::nastran::read,
     },
 ];
 

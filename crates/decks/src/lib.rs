@@ -8,11 +8,12 @@
 //! One folder a format; each reads lines with their places into [`Deck`] and knows nothing of a case; `convert` knows nothing of formats.
 
 mod abaqus;
-mod convert;
 mod ansys;
+mod convert;
 mod deck;
 mod format;
 mod ledger;
+mod nastran;
 mod text;
 mod universal;
 
