@@ -61,6 +61,13 @@ pub(crate) fn read(path: &Path, files: &mut Files) -> Result<Deck> {
         steps_with_loads: 0,
         members_left: 0,
     };
+    if blocks.blocks.is_empty() {
+        reader.files.fault(
+            Place::default(),
+            "no keyword",
+            "keywords that begin with an asterisk, such as *NODE",
+        );
+    }
     for place in &blocks.before {
         reader.deck.ledger.note(Weight::Nothing, "text", "lines before the first keyword", *place);
     }

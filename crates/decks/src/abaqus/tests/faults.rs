@@ -124,4 +124,5 @@ fn large_numbers_are_numbers() {
     let far = "*PART, NAME=P\n*NODE\n1, 1e308, 1e308, 0\n*END PART\n*INSTANCE, NAME=I, PART=P\n1e308, 1e308, 0\n0, 0, 0, 0, 0, 1, 45\n*END INSTANCE\n";
     assert!(faults(far).iter().any(|fault| fault.contains("a place that is finite")), "{:?}", faults(far));
     assert_eq!(faults("*NODE\nx\ny\nz\n").len(), 3);
+    assert!(faults("")[0].contains("no keyword") && faults("version 1\noid 2\n")[0].contains("no keyword"));
 }
