@@ -11,7 +11,8 @@ impl Reader {
             self.files.fault(found.place(), "*MATERIAL without a name", "*MATERIAL, NAME=…");
             return;
         };
-        if self.deck.materials.iter().any(|material| material.name.eq_ignore_ascii_case(&name)) {
+        let next = self.deck.materials.len();
+        if *self.materials.entry(&name, || next) != next {
             self.files.fault(
                 found.place(),
                 format!("a second *MATERIAL `{name}`"),

@@ -54,6 +54,8 @@ pub(crate) fn read(path: &Path, files: &mut Files) -> Result<Deck> {
         frames: Vec::new(),
         frame_of: HashMap::new(),
         orientations: Names::default(),
+        materials: Names::default(),
+        motions: Names::default(),
         interactions: Names::default(),
         interaction: None,
         pending: Vec::new(),
@@ -147,6 +149,9 @@ struct Reader {
     /// Nodes with a frame, as an index of `frames`.
     frame_of: HashMap<usize, usize>,
     orientations: Names<sections::Orientation>,
+    /// Materials and rotating sets by name, as indices of the deck's.
+    materials: Names<usize>,
+    motions: Names<usize>,
     interactions: Names<contacts::Interaction>,
     /// The one that *FRICTION and *SURFACE BEHAVIOR are of.
     interaction: Option<String>,

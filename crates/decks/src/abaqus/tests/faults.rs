@@ -101,6 +101,8 @@ fn what_grows_beyond_the_file_is_bounded() {
     );
     let large = format!("*PART, NAME=P\n*NODE\n{nodes}*END PART\n{instances}");
     assert!(faults(&large)[0].contains("in all instances"));
+    let materials: String = (0..20_000).map(|k| format!("*MATERIAL, NAME=M{k}\n")).collect();
+    assert_eq!(deck(&materials).materials.len(), 20_000);
     // Free faces of the model for every element, one at a time.
     let free: String = (0..20_000).map(|k| format!("*SURFACE, NAME=S{k}\n1\n")).collect();
     assert_eq!(bricks(&free).surfaces.len(), 20_000);
