@@ -3,6 +3,7 @@
 use sha2::{Digest, Sha256};
 use std::path::PathBuf;
 use stridor::case::{Case, read_test};
+use stridor::decks::{Format, read_bytes};
 use stridor::error::{Error, Fault, Result};
 use stridor::results::record::{self, Entry, Saved};
 use stridor::search::SearchFile;
@@ -26,7 +27,7 @@ const KIB: usize = 1 << 10;
 
 /// `times` is what an input of the densest kind takes, a list just after it has been doubled and copied: `1,1,1` in a list of
 /// TOML makes some 110 bytes of two, a line of one digit a mode of 64, an empty line of a universal file 32.
-pub const READERS: [Reader; 12] = [
+pub const READERS: [Reader; 13] = [
     Reader {
         name: "mesh",
         read: mesh,
@@ -83,6 +84,8 @@ pub const READERS: [Reader; 12] = [
         times: 192,
         constant: 512 * KIB,
     },
+    // Members of sets that are named again, and parts that are placed again.
+    Reader { name: "abaqus", read: abaqus, samples: &[], times: 256, constant: (4 << 10) * KIB },
 ];
 
 /// log₂: counts of about the same size are the same kind.
@@ -105,6 +108,27 @@ fn universal(bytes: &[u8]) -> Result<String> {
     let counts = [records.points.len(), records.modes.len(), records.functions.len()];
     let (_, warnings) = records.into_set();
     Ok(format!("{:?} {}", counts.map(about), about(warnings.len())))
+}
+
+/// A model of another program; one in memory includes no files.
+fn deck(bytes: &[u8], format: Format) -> Result<String> {
+    let deck = read_bytes("deck", bytes, format)?;
+    let counts = [
+        deck.nodes.len(),
+        deck.elements.len(),
+        deck.node_sets.len() + deck.element_sets.len() + deck.surfaces.len(),
+        deck.materials.len() + deck.sections.len(),
+        deck.supports.len() + deck.equations.len(),
+        deck.ties.len() + deck.couplings.len() + deck.contacts.len(),
+        deck.masses.len() + deck.springs.len(),
+        deck.loads.len() + deck.motions.len() + deck.analyses.len(),
+        deck.ledger.rows().count(),
+    ];
+    Ok(format!("{:?}", counts.map(about)))
+}
+
+fn abaqus(bytes: &[u8]) -> Result<String> {
+    deck(bytes, Format::Abaqus)
 }
 
 fn table(bytes: &[u8]) -> Result<String> {

@@ -161,12 +161,16 @@ impl Reader {
                 self.all.blocks.push(Block { keyword, options, spans: Vec::new(), place });
                 self.complete = !trimmed.ends_with(',');
                 goes_on = false;
-            } else if !self.complete {
+            } else if !self.complete
+                && !trimmed.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c))
+            {
                 if let Some(block) = self.all.blocks.last_mut() {
                     block.options.extend(split(trimmed).filter_map(option));
                 }
                 self.complete = !trimmed.ends_with(',');
             } else {
+                // A number is no option: the comma above it was one too many.
+                self.complete = true;
                 match self.all.blocks.last_mut() {
                     Some(Block { spans, .. }) => match spans.last_mut().filter(|_| goes_on) {
                         Some(span) => span.end = start,

@@ -36,16 +36,16 @@ impl Reader {
         self.interaction = Some(name.to_string());
     }
 
-    /// *CHANGE FRICTION: the *FRICTION that follows is of an interaction from this step on.
-    pub fn change_friction(&mut self, _: usize, found: Found<'_>) {
+    /// *CHANGE FRICTION, *CHANGE SURFACE BEHAVIOR: what follows is of an interaction from this step on.
+    pub fn change_interaction(&mut self, _: usize, found: Found<'_>) {
         let name = found.option("INTERACTION").unwrap_or_default();
         if self.interactions.get(name).is_none() {
             let words = format!("INTERACTION={name}");
             self.files.fault(found.place(), words, "the name of a *SURFACE INTERACTION");
             return;
         }
-        let why = "the friction of the last step that changes it is read";
-        self.deck.ledger.note(Weight::Perhaps, "*CHANGE FRICTION", why, found.place());
+        let why = "what the last step says of the interaction is read";
+        self.deck.ledger.note(Weight::Perhaps, format!("*{}", found.block.keyword), why, found.place());
         self.interaction = Some(name.to_string());
     }
 

@@ -198,7 +198,9 @@ impl Reader {
 
     /// The same rotation of another step is one.
     fn motion_of(&mut self, motion: Motion) {
-        match self.deck.motions.iter_mut().find(|known| known.set.eq_ignore_ascii_case(&motion.set)) {
+        let next = self.deck.motions.len();
+        let at = *self.motions.entry(&motion.set, || next);
+        match self.deck.motions.get_mut(at) {
             Some(known) => *known = motion,
             None => self.deck.motions.push(motion),
         }

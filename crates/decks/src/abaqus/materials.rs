@@ -11,7 +11,8 @@ impl Reader {
             self.files.fault(found.place(), "*MATERIAL without a name", "*MATERIAL, NAME=…");
             return;
         };
-        if self.deck.materials.iter().any(|material| material.name.eq_ignore_ascii_case(&name)) {
+        let next = self.deck.materials.len();
+        if *self.materials.entry(&name, || next) != next {
             self.files.fault(
                 found.place(),
                 format!("a second *MATERIAL `{name}`"),
@@ -85,21 +86,18 @@ impl Reader {
         self.deck.materials[material].elastic = Some(elastic);
     }
 
-    /// Nine numbers in two lines: eight in the first.
+    /// Nine numbers in two lines: eight in the first, and sometimes fewer.
     fn nine<'a>(&mut self, found: Found<'a>, first: Row<'a>) -> Option<Row<'a>> {
         let Row { place, mut cells } = first;
         while cells.last().is_some_and(|cell| cell.is_empty()) {
             cells.pop();
         }
-        if cells.len() == 8 {
+        if cells.len() < 9 {
             cells.extend(found.rows().nth(1).into_iter().flat_map(|row| row.cells));
         }
         if cells.len() < 9 || cells[8].is_empty() {
-            self.files.fault(
-                place,
-                format!("{} numbers", cells.len().min(8)),
-                "eight numbers, and one in the line below",
-            );
+            let words = format!("{} numbers", cells.len().min(8));
+            self.files.fault(place, words, "eight numbers, and one in the line below");
             return None;
         }
         Some(Row { place, cells })

@@ -227,13 +227,13 @@ impl Reader {
     }
 }
 
-/// Whether the line ends in a comma: what stands behind it is no cell.
+/// Whether the line ends in a comma, or in several: what stands behind is no cell.
 fn drop_last_empty(cells: &mut Vec<&str>) -> bool {
-    let open = cells.len() > 1 && cells.last().is_some_and(|cell| cell.is_empty());
-    if open {
+    let n = cells.len();
+    while cells.len() > 1 && cells.last().is_some_and(|cell| cell.is_empty()) {
         cells.pop();
     }
-    open
+    cells.len() < n
 }
 
 /// The name in the table of kinds of a type with a shape, and the fewest and the most nodes that it has.
@@ -248,7 +248,7 @@ fn shape_of(type_name: &str) -> Option<(String, [usize; 2])> {
     let exact = known(type_name).map(|n| (type_name.to_string(), n));
     // Coupled with temperature: the same nodes.
     exact.or_else(|| {
-        let base = type_name.strip_suffix('T').or_else(|| Some(type_name.strip_suffix("TH")?))?;
+        let base = type_name.strip_suffix('T')?;
         known(base).map(|n| (base.to_string(), n))
     })
 }

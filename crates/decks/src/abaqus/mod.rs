@@ -54,6 +54,8 @@ pub(crate) fn read(path: &Path, files: &mut Files) -> Result<Deck> {
         frames: Vec::new(),
         frame_of: HashMap::new(),
         orientations: Names::default(),
+        materials: Names::default(),
+        motions: Names::default(),
         interactions: Names::default(),
         interaction: None,
         pending: Vec::new(),
@@ -61,6 +63,13 @@ pub(crate) fn read(path: &Path, files: &mut Files) -> Result<Deck> {
         steps_with_loads: 0,
         members_left: 0,
     };
+    if blocks.blocks.is_empty() {
+        reader.files.fault(
+            Place::default(),
+            "no keyword",
+            "keywords that begin with an asterisk, such as *NODE",
+        );
+    }
     for place in &blocks.before {
         reader.deck.ledger.note(Weight::Nothing, "text", "lines before the first keyword", *place);
     }
@@ -140,6 +149,9 @@ struct Reader {
     /// Nodes with a frame, as an index of `frames`.
     frame_of: HashMap<usize, usize>,
     orientations: Names<sections::Orientation>,
+    /// Materials and rotating sets by name, as indices of the deck's.
+    materials: Names<usize>,
+    motions: Names<usize>,
     interactions: Names<contacts::Interaction>,
     /// The one that *FRICTION and *SURFACE BEHAVIOR are of.
     interaction: Option<String>,

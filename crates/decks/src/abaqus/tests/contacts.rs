@@ -50,7 +50,7 @@ fn friction_of_the_last_step_is_read() {
         "{PAIR}*SURFACE INTERACTION, NAME=I\n*FRICTION\n0.\n*SURFACE INTERACTION, NAME=J\n*FRICTION\n0.1\n*STEP\n*CHANGE FRICTION, INTERACTION=I\n*FRICTION\n0.45\n*END STEP\n"
     ));
     assert_eq!(deck.contacts[0].friction, 0.45);
-    assert_eq!(notes(&deck), [(Weight::Perhaps, "*CHANGE FRICTION", 30)]);
+    assert_eq!(notes(&deck), [(Weight::Perhaps, "*CHANGEFRICTION", 30)]);
 }
 
 #[test]

@@ -101,6 +101,8 @@ fn what_grows_beyond_the_file_is_bounded() {
     );
     let large = format!("*PART, NAME=P\n*NODE\n{nodes}*END PART\n{instances}");
     assert!(faults(&large)[0].contains("in all instances"));
+    let materials: String = (0..20_000).map(|k| format!("*MATERIAL, NAME=M{k}\n")).collect();
+    assert_eq!(deck(&materials).materials.len(), 20_000);
     // Free faces of the model for every element, one at a time.
     let free: String = (0..20_000).map(|k| format!("*SURFACE, NAME=S{k}\n1\n")).collect();
     assert_eq!(bricks(&free).surfaces.len(), 20_000);
@@ -124,4 +126,5 @@ fn large_numbers_are_numbers() {
     let far = "*PART, NAME=P\n*NODE\n1, 1e308, 1e308, 0\n*END PART\n*INSTANCE, NAME=I, PART=P\n1e308, 1e308, 0\n0, 0, 0, 0, 0, 1, 45\n*END INSTANCE\n";
     assert!(faults(far).iter().any(|fault| fault.contains("a place that is finite")), "{:?}", faults(far));
     assert_eq!(faults("*NODE\nx\ny\nz\n").len(), 3);
+    assert!(faults("")[0].contains("no keyword") && faults("version 1\noid 2\n")[0].contains("no keyword"));
 }

@@ -1,6 +1,7 @@
 //! How files are written: capitals, ends of lines, letters, and files that include others.
 
 use super::*;
+use crate::deck::Analysis;
 use crate::format::read;
 use std::fmt::Write as _;
 use std::path::Path;
@@ -20,7 +21,10 @@ fn writing_makes_no_difference() {
     assert_eq!(other.sections[0].material, "M");
     assert_eq!(notes(&other), []);
     // A comma at the end of a keyword line, and the next keyword below it.
-    assert_eq!(bricks("*STEP, NLGEOM,\n*FREQUENCY\n3\n").analyses.len(), 1);
+    assert_eq!(
+        bricks("*STEP, NLGEOM,\n*FREQUENCY,\n3\n").analyses,
+        [Analysis::Modes { count: Some(3), band: [None; 2] }]
+    );
 }
 
 #[test]

@@ -64,7 +64,7 @@ fn types_with_temperature_are_read() {
 fn elements_go_on_by_the_number_of_their_nodes() {
     let nodes = &BRICKS[..BRICKS.find("*ELEMENT").unwrap()];
     let text = format!(
-        "{nodes}*ELEMENT, TYPE=C3D8\n1, 1, 2, 3, 4\n5, 6, 7, 8\n2, 5, 6, 7, 8, 9,\n10, 11, 12,\n3, 1, 2, 3, 4, 5, 6, 7, 8, 11, 12,\n4,1,2,3,4,9,10,11,12\n"
+        "{nodes}*ELEMENT, TYPE=C3D8\n1, 1, 2, 3, 4\n5, 6, 7, 8\n2, 5, 6, 7, 8, 9,\n10, 11, 12,\n3, 1, 2, 3, 4, 5, 6, 7, 8, 11, 12,\n4,1,2,3,4,9,10,,\n11,12,,\n"
     );
     let deck = deck(&text);
     assert_eq!(numbers(&deck, &deck.elements[0].nodes), [1, 2, 3, 4, 5, 6, 7, 8]);
