@@ -1,6 +1,7 @@
 //! *BOUNDARY, *EQUATION, *MPC, *TIE.
 
-use super::{Found, Reader, Row, blocks};
+use super::blocks;
+use super::reader::{Found, Reader, Row};
 use crate::deck::{Coupling, CouplingKind, Equation, Frame, Place, Support, Tie};
 use crate::ledger::Weight;
 use std::collections::HashMap;

@@ -1,29 +1,9 @@
 //! *CONTACT PAIR, *SURFACE INTERACTION and what belongs to it.
 
-use super::{Found, Reader, Row};
-use crate::deck::{Contact, Place, Tie};
+use super::reader::{Found, Reader, Row};
+use super::waiting::{Interaction, PendingContact};
+use crate::deck::{Contact, Tie};
 use crate::ledger::Weight;
-
-/// A law of contact.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Interaction {
-    friction: f64,
-    stick: Option<f64>,
-    stiffness: Option<f64>,
-    tied: bool,
-}
-
-/// A pair whose law may stand below it.
-#[derive(Debug)]
-pub(super) struct PendingContact {
-    slave: String,
-    master: String,
-    interaction: String,
-    tied: bool,
-    closed: bool,
-    within: Option<f64>,
-    place: Place,
-}
 
 impl Reader {
     /// *SURFACE INTERACTION: what follows is of it.

@@ -1,7 +1,8 @@
 //! *COUPLING, *KINEMATIC COUPLING, *DISTRIBUTING COUPLING, *RIGID BODY.
 
+use super::blocks;
+use super::reader::{Found, Reader, Row};
 use super::space::Item;
-use super::{Found, Reader, Row, blocks};
 use crate::deck::{Coupling, CouplingKind, Place};
 use crate::ledger::Weight;
 use std::collections::BTreeSet;

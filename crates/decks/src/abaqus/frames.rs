@@ -1,6 +1,6 @@
 //! *TRANSFORM: directions in which the degrees of freedom of a node count.
 
-use super::{Found, Reader};
+use super::reader::{Found, Reader};
 use crate::deck::Frame;
 use crate::ledger::Weight;
 

@@ -1,6 +1,6 @@
 //! The keywords that are read, and what is known of those that are not.
 
-use super::{Found, Reader};
+use super::reader::{Found, Reader};
 use crate::ledger::Weight;
 use Phase::{Elements, Nodes, Rest, Sets, Surfaces};
 

@@ -1,7 +1,8 @@
 //! *CLOAD, *DLOAD, *DSLOAD, *MOTION.
 
+use super::blocks;
+use super::reader::{Found, Reader, Row};
 use super::space::Item;
-use super::{Found, Reader, Row, blocks};
 use crate::deck::{Load, LoadOn, Motion, Place};
 use crate::ledger::Weight;
 

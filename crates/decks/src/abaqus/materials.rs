@@ -1,6 +1,6 @@
 //! *MATERIAL, *ELASTIC, *DENSITY, *DAMPING.
 
-use super::{Found, Reader, Row};
+use super::reader::{Found, Reader, Row};
 use crate::deck::{Elastic, Material};
 use crate::ledger::Weight;
 

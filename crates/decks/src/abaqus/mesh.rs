@@ -1,8 +1,10 @@
 //! *NODE, *ELEMENT.
 
 use super::collapsed::collapsed;
+use super::points;
+use super::reader::{Found, Reader, Row};
 use super::space::Item;
-use super::{Found, Reader, Row, points};
+use super::waiting::PointElement;
 use crate::deck::{Element, Node, Place};
 use crate::ledger::Weight;
 use std::collections::btree_map::Entry;
@@ -138,7 +140,7 @@ impl Reader {
                 }
                 None => {
                     let Some(type_name) = points::type_named(&type_name) else { continue };
-                    self.points.push(points::PointElement { type_name, nodes });
+                    self.points.push(PointElement { type_name, nodes });
                     Item::Point(self.points.len() - 1)
                 }
             };

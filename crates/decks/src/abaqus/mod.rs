@@ -12,11 +12,13 @@ mod couplings;
 mod frames;
 mod keywords;
 mod loads;
+mod lookup;
 mod materials;
 mod mesh;
 mod names;
 mod parts;
 mod points;
+mod reader;
 mod sections;
 mod sets;
 mod space;
@@ -24,18 +26,19 @@ mod steps;
 mod surfaces;
 #[cfg(test)]
 mod tests;
+mod waiting;
 
-use crate::deck::{Deck, Frame, Place};
+use crate::deck::{Deck, Place};
 use crate::ledger::Weight;
 use crate::text::Files;
-use blocks::{Block, Blocks};
+use blocks::Blocks;
 use keywords::{Keyword, Phase};
 use names::Names;
+use reader::{Found, Reader};
 use space::Space;
 use std::collections::HashMap;
 use std::path::Path;
 use stridor_base::error::Result;
-use stridor_base::numbers::parse;
 
 /// Reads an input file and those that it includes.
 ///
@@ -87,84 +90,6 @@ pub(crate) fn read(path: &Path, files: &mut Files) -> Result<Deck> {
     Ok(reader.deck)
 }
 
-/// A block with the file that its lines are in.
-#[derive(Debug, Clone, Copy)]
-struct Found<'a> {
-    blocks: &'a Blocks,
-    pub block: &'a Block,
-}
-
-/// A line of data as its cells.
-#[derive(Debug, Clone)]
-struct Row<'a> {
-    pub place: Place,
-    pub cells: Vec<&'a str>,
-}
-
-impl<'a> Found<'a> {
-    /// The lines of data.
-    pub fn lines(self) -> impl Iterator<Item = (Place, &'a str)> + Clone {
-        self.blocks.lines(self.block)
-    }
-
-    /// The lines of data, each cut at its commas.
-    pub fn rows(self) -> impl Iterator<Item = Row<'a>> + Clone {
-        self.lines().map(|(place, line)| Row { place, cells: blocks::split(line).collect() })
-    }
-
-    /// The value of an option; none where it is empty.
-    pub fn option(self, name: &str) -> Option<&'a str> {
-        self.block.option(name).filter(|value| !value.is_empty())
-    }
-
-    /// The place of the keyword.
-    pub fn place(self) -> Place {
-        self.block.place
-    }
-}
-
-impl<'a> Row<'a> {
-    /// A cell; empty where there is none.
-    pub fn cell(&self, at: usize) -> &'a str {
-        self.cells.get(at).copied().unwrap_or("")
-    }
-}
-
-/// What is read, and what names and numbers mean so far.
-struct Reader {
-    files: Files,
-    deck: Deck,
-    /// That of the model first, then those of the instances.
-    spaces: Vec<Space>,
-    /// Instances by name, as indices of `spaces`.
-    instances: Names<usize>,
-    /// Elements without a shape: masses, springs, dashpots.
-    points: Vec<points::PointElement>,
-    /// Corners of the bricks and quadrilaterals that were read as a kind with fewer, by their elements.
-    collapsed: HashMap<usize, Vec<usize>>,
-    /// Faces that one solid alone has, once they were asked for.
-    outer: Option<Vec<(usize, usize)>>,
-    /// Frames of nodes that are not global.
-    frames: Vec<Frame>,
-    /// Nodes with a frame, as an index of `frames`.
-    frame_of: HashMap<usize, usize>,
-    orientations: Names<sections::Orientation>,
-    /// Materials and rotating sets by name, as indices of the deck's.
-    materials: Names<usize>,
-    motions: Names<usize>,
-    interactions: Names<contacts::Interaction>,
-    /// The one that *FRICTION and *SURFACE BEHAVIOR are of.
-    interaction: Option<String>,
-    /// What waits for laws that may stand below it.
-    pending: Vec<contacts::PendingContact>,
-    /// What the step that is read has asked for so far.
-    step: Option<steps::Step>,
-    /// How many steps have loads.
-    steps_with_loads: usize,
-    /// How many members of sets may still be named: sets of sets, and sets that are named again and again, grow beyond the file.
-    members_left: usize,
-}
-
 impl Reader {
     /// Reads a block where it is of this phase.
     fn read_in(&mut self, phase: Phase, space: usize, found: Found<'_>) {
@@ -195,42 +120,6 @@ impl Reader {
     fn note_unread(&mut self, found: Found<'_>) {
         let (words, weight, why) = keywords::unread(&found.block.keyword);
         self.deck.ledger.note(weight, format!("*{words}"), why, found.place());
-    }
-
-    /// A number; a fault where it is none. An empty cell is zero.
-    fn number(&mut self, row: &Row<'_>, at: usize) -> Option<f64> {
-        let cell = row.cell(at);
-        if cell.is_empty() {
-            return Some(0.0);
-        }
-        let value = parse(cell).filter(|value| value.is_finite());
-        if value.is_none() {
-            self.files.fault(row.place, format!("`{}`", blocks::short(cell)), "a finite number");
-        }
-        value
-    }
-
-    /// N numbers from a cell on.
-    fn numbers<const N: usize>(&mut self, row: &Row<'_>, from: usize) -> Option<[f64; N]> {
-        let mut values = [0.0; N];
-        for (k, value) in values.iter_mut().enumerate() {
-            *value = self.number(row, from + k)?;
-        }
-        Some(values)
-    }
-
-    /// A number of a node or an element; a fault where it is none.
-    fn label(&mut self, place: Place, cell: &str) -> Option<u64> {
-        // `5.` is what some programs write.
-        let label = cell.trim_end_matches('.').parse().ok().filter(|label| *label > 0);
-        if label.is_none() {
-            self.files.fault(
-                place,
-                format!("`{}`", blocks::short(cell)),
-                "a number of a node or an element, from 1",
-            );
-        }
-        label
     }
 
     /// Moves what the spaces and the pending things have into the deck.

@@ -1,9 +1,10 @@
 //! *PART, *ASSEMBLY, *INSTANCE: a part is read once for each of its instances, where that is placed.
 
+use super::blocks::{Block, Blocks};
 use super::frames::rotation;
 use super::names::Names;
+use super::reader::{Found, Reader};
 use super::space::{Placement, Space};
-use super::{Block, Blocks, Found, Reader};
 use crate::ledger::Weight;
 
 /// The blocks of a part.

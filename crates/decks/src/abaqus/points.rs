@@ -1,16 +1,9 @@
 //! Elements without a shape: *MASS, *ROTARY INERTIA, *SPRING, *DASHPOT.
 
+use super::reader::{Found, Reader};
 use super::space::Item;
-use super::{Found, Reader};
 use crate::deck::{PointMass, Spring};
 use crate::ledger::Weight;
-
-/// A mass, a spring, a dashpot or a node of a distributing coupling.
-#[derive(Debug)]
-pub(super) struct PointElement {
-    pub type_name: &'static str,
-    pub nodes: Vec<usize>,
-}
 
 /// Types with the numbers of their nodes.
 const TYPES: [(&str, usize); 9] = [

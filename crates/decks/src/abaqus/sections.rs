@@ -1,21 +1,13 @@
 //! Sections of solids, shells and beams; orientations.
 
 use super::frames::{rotation, turned};
+use super::reader::{Found, Reader, Row};
 use super::space::{Item, Placement};
-use super::{Found, Reader, Row};
+use super::waiting::Orientation;
 use crate::deck::{Elastic, Material, Profile, Section, SectionShape};
 use crate::ledger::Weight;
 use std::f64::consts::PI;
 use stridor_base::numbers::parse;
-
-/// *ORIENTATION: a frame of the model.
-#[derive(Debug, Clone)]
-pub(super) enum Orientation {
-    /// Directions 1 and 2.
-    Axes([[f64; 3]; 2]),
-    /// About an axis, or defined in another way.
-    Other,
-}
 
 impl Reader {
     /// *ORIENTATION: a point on the local x and one in the plane of x and y; then perhaps a rotation.

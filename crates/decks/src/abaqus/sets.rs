@@ -1,7 +1,7 @@
 //! *NSET, *ELSET.
 
+use super::reader::{Found, Reader, Row};
 use super::space::{Item, Space};
-use super::{Found, Reader, Row};
 use crate::deck::Place;
 use crate::ledger::Weight;
 use std::collections::BTreeMap;

@@ -1,15 +1,9 @@
 //! *HEADING, *STEP, *FREQUENCY, *COMPLEX FREQUENCY.
 
-use super::{Found, Reader, blocks};
+use super::blocks;
+use super::reader::{Found, Reader};
+use super::waiting::Step;
 use crate::deck::Analysis;
-
-/// A step that is being read.
-#[derive(Debug, Default)]
-pub(super) struct Step {
-    analysis: Option<Analysis>,
-    /// Whether it has loads.
-    pub loaded: bool,
-}
 
 impl Reader {
     /// *HEADING: the first line is the title.

@@ -1,8 +1,9 @@
 //! *SURFACE: faces of solids and shells, or nodes.
 
+use super::blocks;
 use super::collapsed::side_of_brick;
+use super::reader::{Found, Reader};
 use super::space::Item;
-use super::{Found, Reader, blocks};
 use crate::deck::{Element, Place, ShellFace, Surface};
 use crate::ledger::Weight;
 use stridor_mesh::{Cell, Mesh, Program};

@@ -1,0 +1,139 @@
+//! Names and numbers as a block sees them: those of its own space, and of instances.
+
+use super::blocks;
+use super::reader::Reader;
+use super::space::Item;
+use crate::deck::{Place, Surface};
+use std::collections::HashSet;
+
+/// The most dots of a name that may stand before what is within an instance.
+const MOST_DOTS: usize = 16;
+
+impl Reader {
+    /// A name as seen from a space: its own, or of the model `INSTANCE.NAME`; the space and the name within.
+    fn candidates<'n>(&self, space: usize, name: &'n str) -> Vec<(usize, &'n str)> {
+        let mut found = vec![(space, name)];
+        let dots = name.match_indices('.').map(|(at, _)| at).take(MOST_DOTS);
+        found.extend(dots.filter_map(|at| {
+            let instance = self.instances.get(&name[..at])?;
+            Some((*instance, &name[at + 1..]))
+        }));
+        // A model of one instance may name what is in it without saying so.
+        if space == 0 && self.spaces.len() == 2 {
+            found.push((1, name));
+        }
+        found
+    }
+
+    /// The nodes of a set, or the node of a number; none where there is no such thing.
+    pub fn nodes_called(&self, space: usize, name: &str) -> Option<Vec<usize>> {
+        self.candidates(space, name).into_iter().find_map(|(space, name)| {
+            let space = &self.spaces[space];
+            let numbered =
+                || name.parse().ok().and_then(|number: u64| space.nodes.get(&number)).map(|node| vec![*node]);
+            numbered().or_else(|| space.node_sets.get(name).map(|set| set.members.clone()))
+        })
+    }
+
+    /// [`Reader::nodes_called`], or a fault.
+    pub fn nodes_of(&mut self, space: usize, name: &str, place: Place) -> Option<Vec<usize>> {
+        let found = self.nodes_called(space, name);
+        if found.as_ref().is_some_and(|found| !self.may_name(found.len(), place)) {
+            return None;
+        }
+        if found.is_none() {
+            self.files.fault(
+                place,
+                format!("`{}`", blocks::short(name)),
+                "the number of a node or the name of a set of nodes",
+            );
+        }
+        found
+    }
+
+    /// The one node of a number or of a set of one, or a fault.
+    pub fn node_of(&mut self, space: usize, name: &str, place: Place) -> Option<usize> {
+        match self.nodes_of(space, name, place)?.as_slice() {
+            [node] => Some(*node),
+            several => {
+                let found = format!("`{}`, a set of {} nodes", blocks::short(name), several.len());
+                self.files.fault(place, found, "one node");
+                None
+            }
+        }
+    }
+
+    /// The elements of a set, or the element of a number; none where there is no such thing.
+    pub fn items_called(&self, space: usize, name: &str) -> Option<Vec<Item>> {
+        self.candidates(space, name).into_iter().find_map(|(space, name)| {
+            let space = &self.spaces[space];
+            let numbered = || {
+                name.parse().ok().and_then(|number: u64| space.elements.get(&number)).map(|item| vec![*item])
+            };
+            numbered().or_else(|| space.element_sets.get(name).map(|set| set.items.clone()))
+        })
+    }
+
+    /// [`Reader::items_called`], or a fault.
+    pub fn items_of(&mut self, space: usize, name: &str, place: Place) -> Option<Vec<Item>> {
+        let found = self.items_called(space, name);
+        if found.as_ref().is_some_and(|found| !self.may_name(found.len(), place)) {
+            return None;
+        }
+        if found.is_none() {
+            self.files.fault(
+                place,
+                format!("`{}`", blocks::short(name)),
+                "the number of an element or the name of a set of elements",
+            );
+        }
+        found
+    }
+
+    /// The surface of this name as the deck calls it, or a fault.
+    pub fn surface_of(&mut self, space: usize, name: &str, place: Place) -> Option<String> {
+        let candidates = self.candidates(space, name);
+        let found = candidates.into_iter().find_map(|(space, name)| self.spaces[space].surfaces.get(name));
+        let found = found.map(|surface| surface.name.clone());
+        if found.is_none() {
+            self.files.fault(place, format!("`{}`", blocks::short(name)), "the name of a *SURFACE");
+        }
+        found
+    }
+
+    /// The surface of this name.
+    pub fn surface_called(&self, space: usize, name: &str) -> Option<&Surface> {
+        let candidates = self.candidates(space, name);
+        candidates.into_iter().find_map(|(space, name)| self.spaces[space].surfaces.get(name))
+    }
+
+    /// Whether so many members of sets may still be named; a fault where not.
+    pub fn may_name(&mut self, members: usize, place: Place) -> bool {
+        let may = members <= self.members_left;
+        if !may {
+            let expected = "a file that does not name the same members again and again";
+            self.files.fault(place, "sets with too many members in all", expected);
+        }
+        self.members_left = self.members_left.saturating_sub(members);
+        may
+    }
+
+    /// Sorts the sets once all are there.
+    pub fn settle_sets(&mut self) {
+        for space in &mut self.spaces {
+            for set in &mut space.node_sets.all {
+                if set.unsorted {
+                    let mut seen = HashSet::new();
+                    set.members.retain(|node| seen.insert(*node));
+                } else {
+                    set.members.sort_unstable_by_key(|node| (self.deck.nodes[*node].number, *node));
+                    set.members.dedup();
+                }
+            }
+            for set in &mut space.element_sets.all {
+                set.items.sort_unstable();
+                set.items.dedup();
+            }
+        }
+    }
+}
