@@ -14,6 +14,8 @@ mod blocks;
 mod commands;
 mod conditions;
 mod contact;
+#[cfg(test)]
+mod damaged;
 mod fortran;
 mod frames;
 mod loads;

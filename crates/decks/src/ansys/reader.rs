@@ -59,6 +59,8 @@ pub(super) struct Reader<'a> {
     pub budget: usize,
     /// Members of components and selections that may still be kept.
     pub members_left: usize,
+    /// Whether one of both is used up: no more is read.
+    pub over: bool,
     file: u32,
     lines: Lines<'a>,
 }
@@ -66,16 +68,24 @@ pub(super) struct Reader<'a> {
 impl<'a> Reader<'a> {
     pub fn new(files: &'a mut Files, file: u32, text: &'a str) -> Reader<'a> {
         // Work of selections in proportion to the file, so that no file takes quadratic time.
-        let budget = text.len().saturating_mul(50) + 10_000_000;
+        let budget = text.len().saturating_mul(10) + 10_000_000;
         let members_left = text.len() + 1_000_000;
         let model = Model::default();
-        Reader { files, model, budget, members_left, file, lines: Lines { rest: text, number: 0 } }
+        Reader {
+            files,
+            model,
+            budget,
+            members_left,
+            over: false,
+            file,
+            lines: Lines { rest: text, number: 0 },
+        }
     }
 
     /// Reads the whole file.
     pub fn run(&mut self) {
         while let Some((line, place)) = self.line() {
-            if self.files.too_many() {
+            if self.files.too_many() || self.over {
                 break;
             }
             let line = without_header(line).split('!').next().unwrap_or("");

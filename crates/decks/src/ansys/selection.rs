@@ -189,7 +189,9 @@ impl Reader<'_> {
         let work = work.max(members.len()) + 1;
         let left = self.budget.checked_sub(work);
         if left.is_none() {
-            self.fault(command.place, "more selections of many nodes than can be followed", "fewer of them");
+            let found = "more selections of many nodes than can be followed";
+            self.fault(command.place, found, "fewer of them");
+            self.over = true;
         }
         self.budget = left.unwrap_or(0);
         left.map(|_| members)
@@ -205,6 +207,7 @@ impl Reader<'_> {
                 "fewer of them",
             );
         }
+        self.over |= left.is_none();
         self.members_left = left.unwrap_or(0);
         left.is_some()
     }

@@ -8,11 +8,11 @@ use stridor_base::bounds::{Origin, within};
 use stridor_mesh::CellKind;
 
 /// The deck of a text, and its faults.
-fn read(text: &str) -> (Deck, String) {
+pub(super) fn read(text: &str) -> (Deck, String) {
     read_bytes(text.as_bytes())
 }
 
-fn read_bytes(bytes: &[u8]) -> (Deck, String) {
+pub(super) fn read_bytes(bytes: &[u8]) -> (Deck, String) {
     let mut file = tempfile::NamedTempFile::new().unwrap();
     file.write_all(bytes).unwrap();
     let mut files = Files::default();
@@ -44,7 +44,7 @@ fn eights(numbers: &[i64]) -> String {
 }
 
 /// Nodes 1 to 8 of a cube of side 2 and 9 to 20 in the middles of its edges, in fixed columns.
-fn cube_nodes() -> String {
+pub(super) fn cube_nodes() -> String {
     let corners = [[0, 0, 0], [2, 0, 0], [2, 2, 0], [0, 2, 0], [0, 0, 2], [2, 0, 2], [2, 2, 2], [0, 2, 2]];
     let edges =
         [[0, 1], [1, 2], [2, 3], [3, 0], [4, 5], [5, 6], [6, 7], [7, 4], [0, 4], [1, 5], [2, 6], [3, 7]];
@@ -58,7 +58,7 @@ fn cube_nodes() -> String {
 }
 
 /// An EBLOCK of one element of type 1.
-fn one_element(nodes: &[i64]) -> String {
+pub(super) fn one_element(nodes: &[i64]) -> String {
     let mut head = vec![1, 1, 1, 1, 0, 0, 0, 0, nodes.len() as i64, 0, 5];
     head.extend(&nodes[..nodes.len().min(8)]);
     let rest = if nodes.len() > 8 { eights(&nodes[8..]) } else { String::new() };
@@ -71,7 +71,7 @@ fn kind_of(routine: u32, nodes: &[i64]) -> (CellKind, Vec<u64>, Deck) {
     (element.kind, element.nodes.iter().map(|node| deck.nodes[*node].number).collect(), deck)
 }
 
-const BRICK20: [i64; 20] = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20];
+pub(super) const BRICK20: [i64; 20] = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20];
 
 #[test]
 fn an_element_of_twenty_nodes_has_a_second_line() {
@@ -296,7 +296,7 @@ fn sections_masses_and_springs_are_read() {
 }
 
 /// Two cubes that touch, the upper one with nodes 11 to 18, contact elements on the lower and targets on the upper.
-fn two_cubes(options: &str) -> String {
+pub(super) fn two_cubes(options: &str) -> String {
     let mut text = "ET,1,185\nET,2,173\nET,3,170\nMP,MU,2,0.4\nMP,EX,1,1\nR,7,,,-1E9\n".to_string() + options;
     for (base, z) in [(0, 0), (10, 2)] {
         for (k, [x, y, up]) in
@@ -376,27 +376,4 @@ fn what_is_not_read_is_listed_with_its_weight() {
         nothing.contains("EQSLV") && nothing.contains("MESH200") && nothing.contains("lines of data"),
         "{nothing}"
     );
-}
-
-/// Every cut, and every byte made another one, gives a deck or faults.
-#[test]
-fn nothing_panics_on_damaged_files() {
-    let mut texts = vec![
-        two_cubes("KEYOPT,2,12,1\n")
-            + "SFE,2,6,PRES,0,3.5\nCMBLOCK,A,ELEM,2\n(8i10)\n         1        -2\nCM,B,NODE\nCMOMEGA,A,1,0,0\n",
-    ];
-    let mut nodes = BRICK20;
-    nodes[10] = 0;
-    texts.push(format!("ET,1,186\n{}{}", cube_nodes(), one_element(&nodes)));
-    texts.push("ETBLOCK,1,1\n(2i9,19a9)\n        1      181        0        2\n       -1\nRLBLOCK,1,1,7,7\n(2i8,6g16.9)\n(7g16.9)\n       1       7  1.0\n  2.0\nSECTYPE,1,SHELL\nSECBLOCK,1\n1,1,0,3\n".into());
-    for text in texts {
-        for at in 0..text.len() {
-            read_bytes(&text.as_bytes()[..at]);
-            for byte in [b'9', b'-', b',', b'\n', b' ', 0xff, b'('] {
-                let mut bytes = text.clone().into_bytes();
-                bytes[at] = byte;
-                read_bytes(&bytes);
-            }
-        }
-    }
 }
