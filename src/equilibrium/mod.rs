@@ -27,7 +27,7 @@ pub use linear::{
     linearize_points, tangent_stiffness,
 };
 pub use nearby::Nearby;
-pub use solver::SteadySolver;
+pub use solver::{FEW_POINTS, SteadySolver};
 pub use steady::{check, solve_steady, steady_sliding};
 
 use crate::system::{ContactForces, ContactTangent};

@@ -157,13 +157,16 @@ impl<'a> Prepared<'a> {
             .collect()
     }
 
-    /// Settings of the solution of steady sliding. A contact pressed deeper than half of the thinnest part makes no sense.
-    pub fn steady_options(&self) -> SteadyOptions {
+    /// The thickness of the thinnest plate or the shortest side of a solid \[m\]; infinite where there is neither.
+    pub fn thinnest(&self) -> f64 {
         let solid = |part: &&Part| part.kind.dimension() == 3;
         let sizes = self.model.parts.iter().filter(solid).map(|part| part.smallest_extent(&self.model.nodes));
-        let thinnest =
-            self.model.shells().map(|(_, shell)| shell.thickness).chain(sizes).fold(f64::INFINITY, f64::min);
-        SteadyOptions { penetration_limit: 0.5 * thinnest, ..SteadyOptions::default() }
+        self.model.shells().map(|(_, shell)| shell.thickness).chain(sizes).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Settings of the solution of steady sliding. A contact pressed deeper than half of the thinnest part makes no sense.
+    pub fn steady_options(&self) -> SteadyOptions {
+        SteadyOptions { penetration_limit: 0.5 * self.thinnest(), ..SteadyOptions::default() }
     }
 
     /// The parts that are discs, with their names.

@@ -110,7 +110,8 @@ pub use steady::{PairTotals, SteadyResult};
 pub use summary::{SCHEMA_VERSION, summary_json, write_summary};
 pub use sweeps::SweepResult;
 pub use transient::{
-    FieldSnapshot, Fields, GrowthCompared, RecordPiece, Recording, SpectrumOf, TransientResult,
+    ContactResponses, FieldSnapshot, Fields, GrowthCompared, RecordPiece, Recording, SpectrumOf,
+    TransientResult,
 };
 pub use transient_tables::TransientCsv;
 pub(crate) use transient_tables::TransientTables;
