@@ -71,6 +71,8 @@ pub struct PointState {
     pub forces: ContactForces,
     /// Their derivatives there: the linearised contact.
     pub tangent: ContactTangent,
+    /// Whether a point of a pair that does not slide has slid to where it stands: its friction is at its limit, |F| = μ(0) N.
+    pub slips: bool,
 }
 
 impl PointState {

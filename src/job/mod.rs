@@ -15,6 +15,7 @@ mod checks;
 mod clock;
 mod compare;
 mod complex;
+mod contact_surfaces;
 mod contact_twice;
 mod contacts;
 mod counter;
