@@ -33,6 +33,7 @@ mod links;
 mod measured;
 mod memory;
 mod mesh;
+mod mesh_split;
 mod model;
 mod modes;
 mod motion;

@@ -224,6 +224,7 @@ mod tests {
             real_modes: vec![],
             discs: vec![],
             shares: None,
+            without_split: vec![],
             measured_squeal_hz: vec![],
             band_hz: [0.0, top],
             certificate: None,
