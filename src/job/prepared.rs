@@ -9,6 +9,7 @@ use super::mesh::{CaseFiles, read_mesh, same_mesh};
 use super::model::whole_model;
 use super::place::place;
 use super::regions::Regions;
+use super::rotation::check_sliding;
 use crate::case::{Case, Matrices};
 use crate::equilibrium::SteadyOptions;
 use crate::error::{Faults, Result};
@@ -77,6 +78,9 @@ impl<'a> Prepared<'a> {
         let model = faults.into_result(model)?.unwrap_or_default();
         let assembled = Arc::new(assemble(&model).map_err(|error| in_terms_of_the_case(error, case, None))?);
         let pairs = contact_pairs(case, &regions, &model, &assembled.dofs)?;
+        let mut faults = Faults::new();
+        check_sliding(case, (&regions, &model), &mut warnings, &mut faults);
+        faults.into_result(())?;
         let (structure, coupling) = assembled.rotating(&model)?;
         let system = System {
             structure,
