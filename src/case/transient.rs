@@ -11,9 +11,6 @@ const MOST_STEPS: f64 = 1e8;
 /// The shortest time step with sound \[s\]: one of 200 to a period of 50 kHz, far beyond what is heard.
 const SHORTEST_HEARD: f64 = 1e-7;
 
-/// Steps of a reduced model that are compared with the full one, when the case does not say.
-const COMPARED: usize = 100;
-
 declare! {
     /// A run in time from steady sliding.
     pub struct TransientAnalysis, checked by check {
@@ -27,15 +24,19 @@ declare! {
         /// The integrator.
         pub scheme: SchemeChoice = key::flat(),
         /// The full finite-element model, or one reduced to its modes and the responses to its contacts.
-        pub model: ModelChoice = key::choice().or(ModelChoice::Full),
-        /// How many steps of a reduced model are compared with the full one.
+        pub model: Option<ModelChoice> =
+            key::choice().optional().or_by("reduced with more than 500 contact points, full with fewer", None),
+        /// How many steps of a reduced model are compared with the full one; by itself only one of up to 500 contact points is.
         pub compare_steps: Option<usize> = {
-            let reduced = *model == ModelChoice::Reduced;
+            let full = *model == Some(ModelChoice::Full);
             key::whole()
                 .optional()
-                .check("no such key beside the full model", move |steps| reduced || steps.is_none())
-                .or_by("100 with a reduced model", reduced.then_some(COMPARED))
+                .check("no such key beside the full model", move |steps| !full || steps.is_none())
+                .or_by("100 with a reduced model of up to 500 contact points", None)
         },
+        /// The relative error of the deflections under contact forces up to which a model of more than 500 contact points is reduced.
+        pub contact_tolerance: f64 =
+            key::quantity(NUMBER).within(Bound::Excluded(0.0), Bound::Excluded(1.0)).or(0.1),
         /// Newton's method on the whole instead of the condensed step, to compare.
         pub full_newton: bool = key::flag(false),
         /// How often the motion of all nodes is written, to the nearest time step \[s\]; never when absent.

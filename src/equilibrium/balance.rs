@@ -31,10 +31,13 @@ pub(super) fn states(pairs: &[ContactPair], penetrations: &[f64], u: &[f64]) -> 
     let at = |((pair, point), penetration): ((&ContactPair, &ContactPoint), &f64)| {
         let slid = slid(pair, point, u);
         let (forces, mut tangent) = respond(pair, point, *penetration, slid);
+        let mut slips = false;
         if pair.sticks() {
             tangent = respond(pair, point, *penetration, [0.0; 2]).1;
+            let [_, along, across] = tangent.springs();
+            slips = forces.friction != [along * slid[0], across * slid[1]];
         }
-        PointState { penetration: *penetration, forces, tangent }
+        PointState { penetration: *penetration, forces, tangent, slips }
     };
     points.zip(penetrations).map(at).collect()
 }

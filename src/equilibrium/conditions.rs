@@ -59,15 +59,25 @@ pub(super) fn check_contact(
         first += pair.points.len();
         let deepest = states.iter().map(|s| s.penetration).fold(f64::NEG_INFINITY, f64::max);
         if states.iter().all(|s| s.forces.normal == 0.0) && !pair.is_bilateral() {
-            return Err(Error::analysis(
-                format!("steady sliding, contact `{}`", pair.name),
-                format!(
-                    "no point touches: the nearest stays {} m away at an approach of {} m",
-                    significant(0.0 - deepest, 4),
-                    significant(*approach, 4)
-                ),
-                "Close the contact with a load, move the bodies nearer or press harder",
-            ));
+            let gaps = || pair.points.iter().map(|point| point.gap);
+            let [least, most] = [gaps().fold(f64::INFINITY, f64::min), gaps().fold(0.0, f64::max)];
+            let mut found = format!(
+                "no point touches: the nearest stays {} m away at an approach of {} m",
+                significant(0.0 - deepest, 4),
+                significant(*approach, 4)
+            );
+            let mut help =
+                "Close the contact with a load, move the bodies nearer or press harder".to_string();
+            if least > *approach {
+                found += &format!(
+                    "; the mesh leaves gaps from {} to {} m",
+                    significant(least, 4),
+                    significant(most, 4)
+                );
+                help += "; `initial_gap = \"closed\"` in its table takes the bodies as touching where they are, as of flat faces on curved bodies, \
+                         whose gaps are those of the mesh";
+            }
+            return Err(Error::analysis(format!("steady sliding, contact `{}`", pair.name), found, help));
         }
         if deepest > options.penetration_limit {
             let limit = options.penetration_limit;

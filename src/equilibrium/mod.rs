@@ -27,7 +27,7 @@ pub use linear::{
     linearize_points, tangent_stiffness,
 };
 pub use nearby::Nearby;
-pub use solver::SteadySolver;
+pub use solver::{FEW_POINTS, SteadySolver};
 pub use steady::{check, solve_steady, steady_sliding};
 
 use crate::system::{ContactForces, ContactTangent};
@@ -71,6 +71,8 @@ pub struct PointState {
     pub forces: ContactForces,
     /// Their derivatives there: the linearised contact.
     pub tangent: ContactTangent,
+    /// Whether a point of a pair that does not slide has slid to where it stands: its friction is at its limit, |F| = μ(0) N.
+    pub slips: bool,
 }
 
 impl PointState {

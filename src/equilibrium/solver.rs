@@ -14,7 +14,7 @@ use crate::system::{ContactPair, Coupling, System};
 use std::borrow::Cow;
 
 /// Contact points beyond which the condensed problem costs more, in time and memory, than products with the whole structure.
-const FEW: usize = 500;
+pub const FEW_POINTS: usize = 500;
 
 /// The largest error, relative to the forces and lengths, with which a steady state is an answer.
 const ACCEPTED: f64 = 1e-6;
@@ -44,7 +44,7 @@ impl<'a> SteadySolver<'a> {
     pub fn new(system: &'a System, stiffness: Cow<'a, SparseMatrix>) -> Result<Self> {
         let unsymmetric = system.coupling.as_ref().is_some_and(Coupling::has_stiffness);
         let sticks = system.pairs.iter().any(ContactPair::sticks);
-        let method = if unsymmetric || sticks || system.points().count() > FEW {
+        let method = if unsymmetric || sticks || system.points().count() > FEW_POINTS {
             Method::Assembled(Assembled::new(system, &stiffness)?)
         } else {
             Method::Condensed(Condensed::new(system, &stiffness)?.into())
@@ -244,7 +244,7 @@ mod tests {
 
     #[test]
     fn many_points_are_solved_with_the_whole() {
-        let system = random_system(900, FEW + 20, 40.0, 1);
+        let system = random_system(900, FEW_POINTS + 20, 40.0, 1);
         let stiffness = Cow::Borrowed(&*system.structure.stiffness);
         let solver = SteadySolver::new(&system, stiffness).unwrap();
         assert!(matches!(solver.method, Method::Assembled(_)));

@@ -391,3 +391,29 @@ fn a_state_that_does_not_meet_its_equations_is_refused() {
     let said = analysis_error(&system, &SteadyOptions::default());
     assert!(said.contains("no steady state"), "{said}");
 }
+
+/// A contact that also pulls, at its place without a load: N = 0 everywhere and u = 0 is the state, of gaps that are none or rounding, of few points and many,
+/// linear and cubic.
+#[test]
+fn a_bilateral_contact_without_a_load_carries_nothing() {
+    for seed in 0..12 {
+        for (rounding, cubic) in [(0.0, 0.0), (0.0, 2e4), (1e-17, 0.0), (1e-17, 2e4), (1e-300, 0.0)] {
+            let mut random = Random::seeded(seed);
+            let mut system = random_system(40, if seed % 3 == 0 { 230 } else { 5 }, 1.0, seed);
+            let mut points = system.pairs[0].points.to_vec();
+            points.iter_mut().for_each(|point| point.gap = rounding * random.next());
+            let normal =
+                NormalLaw { stiffness: 300.0, cubic_stiffness: cubic, damping: 0.0, bilateral: true };
+            let law = SlidingLaw::new(normal, Coulomb { mu0: 0.3 }, 0.0);
+            system.pairs[0] = pair(points, law, Closing::Approach(0.0), 1.2);
+            system.load = vec![0.0; 40];
+            let state = solve(&system).unwrap_or_else(|error| panic!("{seed} {rounding:e} {cubic}: {error}"));
+            let largest = state.points.iter().map(|point| point.forces.normal.abs()).fold(0.0, f64::max);
+            let moved = state.displacement.iter().fold(0.0, |m: f64, u| m.max(u.abs()));
+            assert!(
+                within(largest, 1e4 * rounding, RoundOff) && within(moved, 1e2 * rounding, RoundOff),
+                "{seed}: {largest:e}"
+            );
+        }
+    }
+}

@@ -117,6 +117,7 @@ pub fn complex_result<'a>(
         real_modes: labels,
         discs: Vec::new(),
         shares: None,
+        without_split: Vec::new(),
         measured_squeal_hz: cea.measured_squeal.iter().map(|f| (*f, cea.measured_source.clone())).collect(),
         band_hz: band,
         certificate,

@@ -199,7 +199,7 @@ impl Stand {
 /// that they are on.
 fn touches_itself(
     regions: &Regions,
-    [body, counter]: [&Part; 2],
+    (body, counter): (&Part, &[&Part]),
     nodes: &[usize],
     faces: &[Cell],
 ) -> Option<(String, &'static str)> {
@@ -214,9 +214,7 @@ fn touches_itself(
             "Two plates that touch have nodes of their own, half of both thicknesses apart",
         ));
     }
-    if body.name != counter.name {
-        return None;
-    }
+    let counter = counter.iter().find(|part| part.name == body.name)?;
     let piece = lowest_connected(regions.mesh.nodes.len(), body.cells.iter().map(Cell::nodes));
     let own: BTreeSet<usize> = nodes.iter().map(|node| piece[*node]).collect();
     let found = format!("hangs together with the body in `{}`", counter.name);
@@ -240,11 +238,11 @@ pub fn surface_points(
             place("body"),
             format!("region \"{}\", whose nodes are not all on one shell or one solid", contact.body),
             "lines or faces on one of the case's shells, or faces on one of its solids",
-        ))
+        ).with_help("Of several bodies, give each a contact of its own; the counter-faces may be on several solids"))
     })?;
-    let CounterFaces { part: counter, faces } =
+    let CounterFaces { part: counter, parts, faces } =
         counter_faces(&contact.counter, regions, model, (&place("counter"), ", or \"ground\""))?;
-    if let Some((found, help)) = touches_itself(regions, [body, counter], &nodes, &faces) {
+    if let Some((found, help)) = touches_itself(regions, (body, &parts), &nodes, &faces) {
         let found = format!("\"{}\", which {found}", contact.counter);
         let fault = Fault::new(place("counter"), found, "another body: none is in contact with itself");
         return Err(Error::input(fault.with_help(help)));
@@ -313,7 +311,7 @@ pub fn arrows(contact: &Contact, regions: &Regions, model: &Model, points: &[Con
     let sliding = Vector3::from(contact.sliding.way().at(middle.into())) * contact.sliding.rate();
     let press = match (contact.into, counter_faces(&contact.counter, regions, model, ("", "")).ok()) {
         (Some(into), _) => Vector3::from(into),
-        (None, Some(CounterFaces { part, faces })) => {
+        (None, Some(CounterFaces { part, faces, .. })) => {
             let at = |face: &Cell, k: usize| Vector3::from(model.nodes[face.corners()[k]]);
             let normal = |face: &Cell| (at(face, 1) - at(face, 0)).cross(&(at(face, 2) - at(face, 0)));
             let sum = faces.iter().map(normal).sum::<Vector3<f64>>();

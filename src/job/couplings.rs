@@ -117,7 +117,7 @@ fn projected(
     let surface = faults.take(surface(&at("on"), on, regions, model));
     let master = faults.take(counter_faces(to, regions, model, (&at("to"), "")));
     let (surface, master) = faults.into_result((surface, master))?;
-    let (Some((slave, cells)), Some(CounterFaces { part: master, faces })) = (surface, master) else {
+    let (Some((slave, cells)), Some(CounterFaces { part: master, faces, .. })) = (surface, master) else {
         return Err(Error::Input(Faults::new()));
     };
     let found =

@@ -5,6 +5,8 @@ use super::modes::real_modes_below;
 use super::prepared::Prepared;
 use super::states::keeps_the_structure;
 use super::studies::{SHARED, UNCERTAINTY, studies};
+use crate::case::{ModelChoice, TransientAnalysis};
+use crate::equilibrium::FEW_POINTS;
 use crate::error::{Error, Result};
 use crate::linalg::sparse::{add_scaled, sum_of_squares};
 use crate::memory::{Available, available};
@@ -30,6 +32,12 @@ const RIGHT_VECTORS: f64 = 4.5;
 const LEFT_AND_RIGHT_VECTORS: f64 = 6.5;
 /// Vectors besides.
 const OTHER_VECTORS: f64 = 72.0;
+/// Matrices of the contact directions in motion of the full model,
+const DENSE_MATRICES: f64 = 6.0;
+/// vectors of a reduced model beside those of modes, where contacts have many points, at a `contact_tolerance` of 0.1,
+const CONTACT_SHAPES: f64 = 350.0;
+/// and how many times its vectors are there while it is made.
+const REDUCED_COPIES: f64 = 5.0;
 /// What a sample of uncertain scalars takes in all \[bytes\],
 const SAMPLE: f64 = 460.0;
 /// and for each of its modes: counted in runs of 20 000 to 200 000 samples of 2 and 22 modes.
@@ -158,7 +166,9 @@ pub fn expected_memory(prepared: &Prepared, selection: Selection) -> Result<Opti
         }),
     };
     let skew = prepared.system.skew().map_or(0.0, |_| SKEW_MATRICES * run.matrix());
-    let bytes = run.peak(kind) + skew + samples;
+    let moves = case.transient.as_ref().filter(|_| selection.includes("transient", case));
+    let motion = moves.map_or(0.0, |wanted| run.motion(prepared.system.points().count(), wanted));
+    let bytes = run.peak(kind) + skew + samples + motion;
     if dofs < LARGE.0 && bytes < LARGE.1 {
         return Ok(None);
     }
@@ -189,6 +199,18 @@ struct ProblemSize {
 }
 
 impl ProblemSize {
+    /// What motion in time takes besides \[bytes\]: of the full model square matrices of the contact directions, of a reduced one its
+    /// vectors, which contacts of many points need many of.
+    fn motion(&self, points: usize, wanted: &TransientAnalysis) -> f64 {
+        let (directions, many) = (3.0 * points as f64, points > FEW_POINTS);
+        let reduced = wanted.model.map_or(many, |model| model == ModelChoice::Reduced);
+        if !reduced {
+            return 8.0 * DENSE_MATRICES * directions * directions;
+        }
+        let vectors = if many { 2.0 * self.modes + CONTACT_SHAPES } else { self.modes + directions };
+        8.0 * REDUCED_COPIES * vectors.min(self.dofs as f64) * self.dofs as f64
+    }
+
     /// The bytes of a matrix like K.
     fn matrix(&self) -> f64 {
         12.0 * self.entries as f64

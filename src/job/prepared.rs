@@ -9,6 +9,7 @@ use super::mesh::{CaseFiles, read_mesh, same_mesh};
 use super::model::whole_model;
 use super::place::place;
 use super::regions::Regions;
+use super::rotation::check_sliding;
 use crate::case::{Case, Matrices};
 use crate::equilibrium::SteadyOptions;
 use crate::error::{Faults, Result};
@@ -77,6 +78,9 @@ impl<'a> Prepared<'a> {
         let model = faults.into_result(model)?.unwrap_or_default();
         let assembled = Arc::new(assemble(&model).map_err(|error| in_terms_of_the_case(error, case, None))?);
         let pairs = contact_pairs(case, &regions, &model, &assembled.dofs)?;
+        let mut faults = Faults::new();
+        check_sliding(case, (&regions, &model), &mut warnings, &mut faults);
+        faults.into_result(())?;
         let (structure, coupling) = assembled.rotating(&model)?;
         let system = System {
             structure,
@@ -157,13 +161,16 @@ impl<'a> Prepared<'a> {
             .collect()
     }
 
-    /// Settings of the solution of steady sliding. A contact pressed deeper than half of the thinnest part makes no sense.
-    pub fn steady_options(&self) -> SteadyOptions {
+    /// The thickness of the thinnest plate or the shortest side of a solid \[m\]; infinite where there is neither.
+    pub fn thinnest(&self) -> f64 {
         let solid = |part: &&Part| part.kind.dimension() == 3;
         let sizes = self.model.parts.iter().filter(solid).map(|part| part.smallest_extent(&self.model.nodes));
-        let thinnest =
-            self.model.shells().map(|(_, shell)| shell.thickness).chain(sizes).fold(f64::INFINITY, f64::min);
-        SteadyOptions { penetration_limit: 0.5 * thinnest, ..SteadyOptions::default() }
+        self.model.shells().map(|(_, shell)| shell.thickness).chain(sizes).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Settings of the solution of steady sliding. A contact pressed deeper than half of the thinnest part makes no sense.
+    pub fn steady_options(&self) -> SteadyOptions {
+        SteadyOptions { penetration_limit: 0.5 * self.thinnest(), ..SteadyOptions::default() }
     }
 
     /// The parts that are discs, with their names.

@@ -2,6 +2,7 @@
 
 use super::clock::Clock;
 use super::complex::whole_modes;
+use super::contact_surfaces::contact_surfaces;
 use super::known::KnownAnswers;
 use super::modes::{check_damping_frequencies, real_modes_below};
 use super::operating_point::OperatingPoint;
@@ -141,6 +142,7 @@ fn steady_result(prepared: &Prepared, state: SteadySliding) -> SteadyResult {
                 (per == Some(StiffnessPer::Area)).then_some(point.weight)
             })
             .collect(),
+        surfaces: contact_surfaces(prepared),
         pairs,
         directions: prepared.arrows(),
         state,

@@ -17,6 +17,8 @@ const STANDS: f64 = 0.1;
 pub struct Disc {
     /// Unit normal.
     pub normal: Vector3<f64>,
+    /// The centre of its outer edge \[m\].
+    pub centre: Vector3<f64>,
     /// Nodes of the disc, ascending.
     pub nodes: Vec<usize>,
     /// (r \[m\], θ \[rad\]) of each node about the centre.
@@ -59,7 +61,7 @@ impl Disc {
             })
             .collect();
         let points = DiscPoints::new(&polar)?;
-        Some(Disc { normal, nodes, polar, axes: [e1, e2], points })
+        Some(Disc { normal, centre, nodes, polar, axes: [e1, e2], points })
     }
 
     /// Nodal diameters and circles of the bending in a shape, given by the displacement \[m\] and rotation \[rad\] of each node;

@@ -6,12 +6,18 @@
 //! VᵀMV = I and VᵀKV = diag(ω²): the reduced model is a [`System`] with contact points of its own, and every analysis
 //! takes it like the large one. Its static compliance at the contact is that of the large one; steady sliding is the
 //! same.
+//!
+//! Contacts of many points have far more directions than the model needs: there Ψ are the responses to the forces that occur in them
+//! (`contacts`), and the points stay where they are, apart from the system.
 
+mod contacts;
 mod receptance;
+
+pub use contacts::{ProbedError, ReducedContacts};
 
 pub use receptance::{DampingOfModes, MODES, Receptance};
 
-use crate::equilibrium::{SteadySliding, tangent_stiffness};
+use crate::equilibrium::{FEW_POINTS, SteadySliding, tangent_stiffness};
 use crate::error::Result;
 use crate::linalg::dense::{product, symmetric_eigen};
 use crate::linalg::factor::factorize;
@@ -34,6 +40,8 @@ pub struct Reduced {
     pub inertia: Mat<f64>,
     /// How many of the first columns are real modes.
     pub modes: usize,
+    /// The contacts, where they have so many points that `system` is without them.
+    pub contacts: Option<ReducedContacts>,
 }
 
 impl Reduced {
@@ -71,8 +79,14 @@ impl Reduced {
     }
 }
 
+/// Whether a system has so many contact points that they are not reduced one by one.
+pub fn has_many_points(system: &System) -> bool {
+    system.points().count() > FEW_POINTS
+}
+
 /// Reduces `system` about its steady state to its real modes `real` and the residual attachment of its contact points
-/// and of the `forces` on it.
+/// and of the `forces` on it; with a `tolerance` to that of the forces that occur in the contacts, with about this relative error, in place
+/// of the points one by one.
 ///
 /// # Errors
 /// A stiffness that cannot be factorised, even with a little mass on it.
@@ -81,12 +95,15 @@ pub fn reduce(
     steady: &SteadySliding,
     real: &RealModes,
     forces: &[SparseVector],
+    tolerance: Option<f64>,
 ) -> Result<Reduced> {
     let n = system.n_dofs();
     let stiffness = tangent_stiffness(system, &steady.displacement)?;
     let mass = &system.structure.mass;
+    let many = tolerance.is_some();
     let imported = system.coupling.iter().flat_map(|rest| &rest.directions);
-    let touched = system.points().flat_map(|(_, point)| {
+    let few = system.points().filter(|_| !many);
+    let touched = few.flat_map(|(_, point)| {
         [&point.normal, &point.tangents[0], &point.tangents[1]]
             .into_iter()
             .filter(|d| !d.indices().is_empty())
@@ -95,8 +112,14 @@ pub fn reduce(
     let column = |x: &[f64]| Mat::from_fn(n, 1, |i, _| x[i]);
     let load = column(&system.load);
     let mut responses = beside(dense_columns(n, &directions).as_ref(), load.as_ref());
-    softened(&stiffness, mass, real)?.solve_in_place(responses.as_mut());
-    let responses = beside(responses.as_ref(), column(&steady.displacement).as_ref());
+    let mut probed = None;
+    if let Some(tolerance) = tolerance {
+        let (found, error) = contacts::responses((system, steady), real, responses, tolerance)?;
+        (responses, probed) = (found, Some(error));
+    } else {
+        softened(&stiffness, mass, real)?.solve_in_place(responses.as_mut());
+        responses = beside(responses.as_ref(), column(&steady.displacement).as_ref());
+    }
     let attached = attachment(&stiffness, mass, real, responses)?;
     let modes = real.len();
     let basis = beside(real.shapes.as_ref(), attached.1.as_ref());
@@ -105,10 +128,11 @@ pub fn reduce(
     let structure = Structure {
         mass: diagonal_matrix(&vec![1.0; basis.ncols()]).into(),
         stiffness: diagonal_matrix(&squares).into(),
-        damping: damping(&system.structure.damping, &basis, modes),
+        damping: damping(&system.structure.damping, &basis, if many { basis.ncols() } else { modes }),
         engine: Engine::default(),
     };
-    let pairs = system.pairs.iter().map(|pair| ContactPair {
+    let contacts = probed.map(|error| ReducedContacts::new(&system.pairs, &basis, error));
+    let pairs = system.pairs.iter().filter(|_| !many).map(|pair| ContactPair {
         points: pair.points.iter().map(|point| seen(&basis, point)).collect(),
         ..pair.clone()
     });
@@ -121,7 +145,7 @@ pub fn reduce(
         prestress: None,
         coupling,
     };
-    Ok(Reduced { system, basis, inertia, modes })
+    Ok(Reduced { system, basis, inertia, modes, contacts })
 }
 
 /// A coupling seen through V; beside sparse skew parts all of it acts between its coordinates.
@@ -273,7 +297,7 @@ mod tests {
             let steady = solve_steady(&system, &SteadyOptions::default(), &()).unwrap();
             let real = dense_modes(&system, 9);
             let push = SparseVector::from_entries([(7, 1.0), (20, -0.5)]);
-            let reduced = reduce(&system, &steady, &real, std::slice::from_ref(&push)).unwrap();
+            let reduced = reduce(&system, &steady, &real, std::slice::from_ref(&push), None).unwrap();
             let m = reduced.basis.ncols();
             assert!(reduced.modes == 9 && m > 9 && m <= 9 + 4 * 3 + 3, "{m}");
             let off = |a: &Mat<f64>, expected: &dyn Fn(usize) -> f64| {

@@ -63,11 +63,11 @@ impl Receptance {
         if let Some(modal) = (damping.of)(&system.structure.mass, &real)? {
             system.structure.damping.modal = Some(modal);
         }
-        let first = reduce(&system, &steady, &real, forms)?;
+        let first = reduce(&system, &steady, &real, forms, None)?;
         let inertia = (first.modes..first.inertia.ncols())
             .map(|k| SparseVector::from_dense(first.inertia.col_as_slice(k)));
         let forms: Vec<SparseVector> = forms.iter().cloned().chain(inertia).collect();
-        let reduced = reduce(&system, &steady, &real, &forms)?;
+        let reduced = reduce(&system, &steady, &real, &forms, None)?;
         Ok(Receptance { system, steady, real, reduced })
     }
 }

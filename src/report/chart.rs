@@ -175,8 +175,14 @@ impl Chart {
 
     /// A polygon.
     pub fn polygon(&mut self, points: impl IntoIterator<Item = [f64; 2]>, style: &str) {
-        let corners: Vec<SvgPoint> = points.into_iter().map(|point| self.pixel(point)).collect();
-        self.marks.polygons([&corners[..]], style);
+        self.polygons([points.into_iter().collect()], style);
+    }
+
+    /// Polygons as one path.
+    pub fn polygons(&mut self, polygons: impl IntoIterator<Item = Vec<[f64; 2]>>, style: &str) {
+        let pixels = |polygon: Vec<[f64; 2]>| polygon.into_iter().map(|point| self.pixel(point)).collect();
+        let corners: Vec<Vec<SvgPoint>> = polygons.into_iter().map(pixels).collect();
+        self.marks.polygons(corners.iter().map(Vec::as_slice), style);
     }
 
     /// Words on a baseline `off` a point \[px\].

@@ -50,15 +50,21 @@ fn proof(result: &ComplexResult) -> ReportTable {
     table
 }
 
+/// What is said of modes whose growth vanishes without the split of double modes.
+const BY_MESH: &str = "unstable only by the asymmetry of the mesh";
+const WITHOUT_SPLIT: &str = "No mesh split: σ, to first order, if the mesh did not part the double modes of the disc, a body of revolution";
+
 /// The unstable modes, the strongest growth first, with the nearest measured squeal.
 fn unstable(result: &ComplexResult) -> ReportTable {
-    let headings =
-        ["f [Hz]", "growth rate σ [1/s]", "damping ratio [%]", "grows tenfold in [ms]", "<measured squeal"];
-    let mut table = ReportTable::new("Unstable modes", &headings);
+    let split = result.without_split.iter().any(Option::is_some);
+    let without = split.then_some("no mesh split [1/s]");
+    let headings = ["f [Hz]", "growth rate σ [1/s]"].into_iter().chain(without);
+    let headings = headings.chain(["damping ratio [%]", "grows tenfold in [ms]", "<measured squeal"]);
+    let mut table = ReportTable::new("Unstable modes", &headings.collect::<Vec<_>>());
     table.alarming = true;
-    let mut modes: Vec<_> = result.modes.modes.iter().filter(|m| m.unstable()).collect();
-    modes.sort_by(|a, b| b.growth_rate().total_cmp(&a.growth_rate()));
-    for mode in modes {
+    let mut modes: Vec<_> = result.modes.modes.iter().enumerate().filter(|(_, m)| m.unstable()).collect();
+    modes.sort_by(|(_, a), (_, b)| b.growth_rate().total_cmp(&a.growth_rate()));
+    for (k, mode) in modes {
         let hz = mode.frequency_hz();
         let squeal = match nearest_squeal(result, hz) {
             Some(measured) => {
@@ -68,14 +74,23 @@ fn unstable(result: &ComplexResult) -> ReportTable {
             None if result.measured_squeal_hz.is_empty() => "no measurement given".into(),
             None => format!("none within {} %", fixed(100.0 * SQUEAL_TOLERANCE, 0)),
         };
-        let cells = vec![
-            hertz(hz, 1),
-            rate(mode.eigenvalue),
+        let mut cells = vec![hertz(hz, 1), rate(mode.eigenvalue)];
+        if split {
+            let alone = if result.unstable_by_mesh(k) { " (mesh alone)" } else { "" };
+            let words = |growth| rate(c64::new(growth, mode.eigenvalue.im)) + alone;
+            cells.push(result.growth_without_split(k).map_or("–".into(), words));
+        }
+        cells.extend([
             signed(100.0 * mode.damping_ratio(), 3),
             significant(1e3 * 10_f64.ln() / mode.growth_rate(), 3),
             squeal,
-        ];
+        ]);
         table.row(cells, true);
+    }
+    if split {
+        let by_mesh = (0..result.modes.modes.len()).any(|k| result.unstable_by_mesh(k));
+        let alone = if by_mesh { format!("; mesh alone: {BY_MESH}") } else { String::new() };
+        table.notes.push(format!("{WITHOUT_SPLIT}{alone}."));
     }
     let unmatched: Vec<String> = result
         .measured_squeal_hz
@@ -221,6 +236,13 @@ fn finding(result: &ComplexResult) -> Finding {
             (FindingClass::Bad, format!("Unstable: {n} of {all} complex modes {between} grow.{doubt}"))
         }
     };
+    let by_mesh = (0..modes.len()).filter(|k| result.unstable_by_mesh(*k)).count();
+    if by_mesh > 0 {
+        let are = if by_mesh == 1 { "is" } else { "are" };
+        words += &format!(
+            " {by_mesh} {are} {BY_MESH} of the disc, which parts its double modes: try a finer or a symmetric mesh."
+        );
+    }
     match counted {
         Some(true) => {}
         Some(false) => {

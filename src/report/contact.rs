@@ -1,18 +1,22 @@
 //! `contact.svg`: normal force and penetration of the contact points, open and closed: over the position along a line of points,
-//! in plan view for a face; a table where the points are few.
+//! on the faces of a body that touches with faces; a table where the points are few.
 
 use super::chart::{Axis, Chart, WIDTH, ends, wide, widened};
 use super::colours::{ALARM, CALM, INK, MEASURED};
-use super::contact_face::{self, PlacedPoint, carried};
+use super::contact_face;
 use super::format::significant;
 use super::section::Picture;
 use super::svg::{Sheet, fill, ink, sheer, stroke};
 use super::table::ReportTable;
 use super::view::{ViewVector, cross, dot, unit};
+use crate::equilibrium::PointState;
 use crate::results::{SteadyResult, file_name};
 
 /// Fewer points are no curve: they stand in the table.
 const FEWEST: usize = 5;
+
+/// A contact point at a place.
+type PlacedPoint<'a> = (ViewVector, &'a PointState);
 
 /// A contact point on the picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -35,22 +39,22 @@ fn counted(steady: &SteadyResult) -> impl Iterator<Item = (&str, usize)> {
 }
 
 /// A picture of every pair with enough points of which one is closed.
-pub(super) fn pictures(steady: &SteadyResult) -> Vec<Picture> {
+pub(super) fn pictures(steady: &SteadyResult, nodes: &[ViewVector]) -> Vec<Picture> {
     let enough = counted(steady).filter(|(_, points)| *points >= FEWEST);
     let mut pictures: Vec<(&str, Picture)> =
-        enough.filter_map(|(name, _)| Some((name, picture(steady, name)?))).collect();
+        enough.filter_map(|(name, _)| Some((name, picture(steady, name, nodes)?))).collect();
     if pictures.len() > 1 {
         pictures.iter_mut().for_each(|(name, picture)| picture.file = file_name("contact", name));
     }
     pictures.into_iter().map(|(_, picture)| picture).collect()
 }
 
-fn picture(steady: &SteadyResult, name: &str) -> Option<Picture> {
+fn picture(steady: &SteadyResult, name: &str, nodes: &[ViewVector]) -> Option<Picture> {
     let points = near_closed(steady, name);
     if points.is_empty() {
         return None;
     }
-    if let Some(picture) = contact_face::picture(steady, name, &points) {
+    if let Some(picture) = contact_face::picture(steady, name, nodes) {
         return Some(picture);
     }
     let of_pair = steady.pairs.iter().zip(&steady.directions).find(|((pair, ..), _)| pair == name);
@@ -92,7 +96,7 @@ const AXES: [(ViewVector, &str); 3] =
 
 /// The least and largest place of the closed points along a direction.
 fn span(points: &[PlacedPoint], direction: ViewVector) -> [f64; 2] {
-    ends(points.iter().filter(|(_, s, _)| s.closed()).map(|(place, ..)| dot(*place, direction)))
+    ends(points.iter().filter(|(_, s)| s.closed()).map(|(place, _)| dot(*place, direction)))
 }
 
 fn width(points: &[PlacedPoint], direction: ViewVector) -> f64 {
@@ -102,10 +106,8 @@ fn width(points: &[PlacedPoint], direction: ViewVector) -> f64 {
 
 /// The points of a pair near its closed ones: the far side of a rim, for one, says nothing.
 fn near_closed<'a>(steady: &'a SteadyResult, pair: &str) -> Vec<PlacedPoint<'a>> {
-    let all = steady.points.iter().zip(&steady.state.points).zip(&steady.areas);
-    let of_pair = all.filter(|(((name, _), _), _)| name == pair);
-    let all: Vec<PlacedPoint> =
-        of_pair.map(|(((_, place), state), area)| (*place, state, area.filter(|area| *area > 0.0))).collect();
+    let all = steady.points.iter().zip(&steady.state.points).filter(|((name, _), _)| name == pair);
+    let all: Vec<PlacedPoint> = all.map(|((_, place), state)| (*place, state)).collect();
     let reach = AXES.iter().map(|(direction, _)| width(&all, *direction)).fold(1e-3, f64::max);
     let spans = AXES.map(|(direction, _)| (direction, span(&all, direction)));
     let near = |place: ViewVector| {
@@ -113,7 +115,7 @@ fn near_closed<'a>(steady: &'a SteadyResult, pair: &str) -> Vec<PlacedPoint<'a>>
             .iter()
             .all(|(direction, [low, high])| (low - reach..=high + reach).contains(&dot(place, *direction)))
     };
-    all.iter().copied().filter(|(place, ..)| near(*place)).collect()
+    all.iter().copied().filter(|(place, _)| near(*place)).collect()
 }
 
 /// Points along a line or a rim, and the name of the axis they are drawn over.
@@ -123,8 +125,8 @@ fn marks(points: &[PlacedPoint], slide: Option<ViewVector>) -> (Vec<Mark>, &'sta
     };
     let (axis, name) = AXES.into_iter().reduce(longer).expect("there are three");
     let edge =
-        slide.and_then(|slide| edge_divider(slide, points.iter().map(|(place, ..)| *place).collect(), axis));
-    let mark = |(place, state, _): &PlacedPoint| Mark {
+        slide.and_then(|slide| edge_divider(slide, points.iter().map(|(place, _)| *place).collect(), axis));
+    let mark = |(place, state): &PlacedPoint| Mark {
         place: 1e3 * dot(*place, axis),
         force: state.forces.normal,
         penetration: 1e6 * state.penetration,
@@ -142,6 +144,13 @@ fn edge_divider(slide: ViewVector, places: Vec<ViewVector>, axis: ViewVector) ->
     let width = high - low;
     let at_an_edge = |s: &f64| (s - low).min(high - s) < 0.2 * width;
     (width > 0.0 && along.iter().all(at_an_edge)).then_some((direction, 0.5 * (low + high)))
+}
+
+/// The normal force of all points, and how many carry it.
+fn carried(points: &[PlacedPoint]) -> String {
+    let total: f64 = points.iter().map(|(_, state)| state.forces.normal).sum();
+    let closed = points.iter().filter(|(_, state)| state.closed()).count();
+    format!("ΣN = {} N on {closed} closed points of {}", significant(total, 4), points.len())
 }
 
 fn drawn(marks: &[Mark], axis: &str, words: &str) -> String {
@@ -203,7 +212,7 @@ mod tests {
         assert!(within((marks.iter().map(|m| m.force).sum::<f64>() - 20.0).abs(), 1e-9, RoundOff));
         assert_eq!(marks.iter().filter(|m| m.ahead).count(), 7);
         assert!(table(steady).is_none());
-        let svg = pictures(steady)[0].svg.clone();
+        let svg = pictures(steady, &[])[0].svg.clone();
         assert!(svg.contains("ΣN = 20.00 N on 6 closed points of 14") && !svg.contains("NaN"));
     }
 
@@ -218,7 +227,7 @@ mod tests {
         let state = |k: usize| listed.rows[k].cells.last().unwrap().clone();
         let closed = steady.state.points[1].closed();
         assert_eq!(state(1), if closed { "sliding" } else { "open" });
-        assert!(pictures(steady).is_empty());
+        assert!(pictures(steady, &[]).is_empty());
         steady.pairs[0].2 = 0.0;
         assert!(steady.states().all(|word| word != "sliding"));
     }
@@ -233,6 +242,6 @@ mod tests {
             .points
             .iter_mut()
             .for_each(|p| p.forces.normal = 0.0);
-        assert!(pictures(results.get::<SteadyResult>().unwrap()).is_empty());
+        assert!(pictures(results.get::<SteadyResult>().unwrap(), &[]).is_empty());
     }
 }

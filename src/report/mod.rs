@@ -27,6 +27,7 @@ mod comparison;
 mod complex;
 mod contact;
 mod contact_face;
+mod contact_plane;
 mod contours;
 mod disc_modes;
 mod explored;

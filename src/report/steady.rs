@@ -13,7 +13,11 @@ pub(super) fn sections(results: &RunResults) -> Vec<ReportSection> {
     let section =
         ReportSection::new("Steady sliding").findings([finding(steady, results.get::<TransientResult>())]);
     let section = section.tables(Display::Titled, [table(steady)]);
-    vec![section.tables(Display::Folded, contact::table(steady)).pictures(contact::pictures(steady))]
+    vec![
+        section
+            .tables(Display::Folded, contact::table(steady))
+            .pictures(contact::pictures(steady, &results.geometry.nodes)),
+    ]
 }
 
 /// The force in motion, in forces at rest, from which it is named.

@@ -27,6 +27,9 @@ pub struct ComplexResult {
     pub discs: Vec<Option<DiscModeName>>,
     /// Shares of the parts in each mode; `None` of imported matrices.
     pub shares: Option<PartShares>,
+    /// σ of each unstable mode \[1/s\], to first order, if the double modes of bodies of revolution were not split by the mesh; `None` of others, and where
+    /// there is no such body.
+    pub without_split: Vec<Option<f64>>,
     /// Frequencies that measurements show squealing \[Hz\], with their source; may be empty.
     pub measured_squeal_hz: Vec<(f64, String)>,
     /// Frequency band of the analysis \[Hz\].
@@ -37,8 +40,8 @@ pub struct ComplexResult {
     pub confirmation: Option<Confirmation>,
 }
 
-/// A complex mode with the words on its real modes, the name of its disc's motion, and the mode of a part that it is like.
-type ComplexModeRow<'a> = (&'a ComplexMode, &'a str, Option<DiscModeName>, Option<&'a PartMode>);
+/// A complex mode with the words on its real modes, the name of its disc's motion, σ without split, and the mode of a part that it is like.
+type ComplexModeRow<'a> = (&'a ComplexMode, &'a str, Option<DiscModeName>, Option<f64>, Option<&'a PartMode>);
 
 fn columns<'a>() -> Vec<Column<ComplexModeRow<'a>>> {
     vec![
@@ -110,11 +113,25 @@ fn columns<'a>() -> Vec<Column<ComplexModeRow<'a>>> {
             "nodal_diameters",
             "1",
             "nodal diameters of the motion of the disc, where that has a tenth of the kinetic energy",
-            |(_, _, disc, _): &ComplexModeRow| disc.map(|disc| disc.nodal_diameters),
+            |(_, _, disc, ..): &ComplexModeRow| disc.map(|disc| disc.nodal_diameters),
         ),
-        column("nodal_circles", "1", "nodal circles of that motion", |(_, _, disc, _): &ComplexModeRow| {
+        column("nodal_circles", "1", "nodal circles of that motion", |(_, _, disc, ..): &ComplexModeRow| {
             disc.map(|disc| disc.nodal_circles)
         }),
+        column(
+            "unsplit_growth_rate",
+            "1/s",
+            "σ of an unstable mode, to first order, if the mesh did not split the double modes of bodies of revolution",
+            |(_, _, _, without, _): &ComplexModeRow| *without,
+        ),
+        column(
+            "unstable_by_mesh",
+            "1",
+            "whether the mode is unstable only by the asymmetry of the mesh: without that split it does not grow",
+            |(mode, _, _, without, _): &ComplexModeRow| {
+                without.is_some_and(|without| only_by_mesh(mode, without))
+            },
+        ),
         column(
             "part_mode",
             "text",
@@ -135,6 +152,27 @@ fn columns<'a>() -> Vec<Column<ComplexModeRow<'a>>> {
         )
         .shown("real modes that take part", |(_, words, ..)| (*words).to_string()),
     ]
+}
+
+/// Growth without the split below this part of that with it is the error of first order.
+const FIRST_ORDER: f64 = 0.01;
+
+/// Whether a growth `without` the split of double modes is none: at most the error of λ, or what is left of first order.
+fn only_by_mesh(mode: &ComplexMode, without: f64) -> bool {
+    let resolved = mode.resolution().max(ROUND_OFF * mode.eigenvalue.norm());
+    mode.unstable() && without <= resolved.max(FIRST_ORDER * mode.growth_rate())
+}
+
+impl ComplexResult {
+    /// σ of mode `k` without the split of double modes \[1/s\], where it is known.
+    pub fn growth_without_split(&self, k: usize) -> Option<f64> {
+        self.without_split.get(k).copied().flatten()
+    }
+
+    /// Whether mode `k` is unstable only because the mesh of a body of revolution is not symmetric.
+    pub fn unstable_by_mesh(&self, k: usize) -> bool {
+        self.growth_without_split(k).is_some_and(|without| only_by_mesh(&self.modes.modes[k], without))
+    }
 }
 
 fn close_call_columns() -> Vec<Column<CloseCall>> {
@@ -240,7 +278,7 @@ impl ComplexResult {
         let row = |(k, mode)| -> ComplexModeRow {
             let words = self.participation.get(k).map_or("", String::as_str);
             let alone = self.shares.as_ref().and_then(|shares| shares.part_mode(k));
-            (mode, words, self.discs.get(k).copied().flatten(), alone)
+            (mode, words, self.discs.get(k).copied().flatten(), self.growth_without_split(k), alone)
         };
         let modes: Vec<ComplexModeRow> = self.modes.modes.iter().enumerate().map(row).collect();
         Table::of("eigenvalues", "mode", &columns(), &modes).file("complex_modes")

@@ -16,6 +16,7 @@
 //! | `uncertainty_<name>.csv`, `…_modes.csv`, `…_scalars.csv` | samples of uncertain scalars; how often each mode grows; which scalar decides | spreadsheets |
 //! | `damping_verdicts.csv` | verdicts that the modal damping decides | spreadsheets |
 //! | `transient.vtkhdf` | the motion of all nodes at regular times | ParaView |
+//! | `contact.vtu` | pressure and status on the faces in contact | ParaView, pyvista |
 //! | `modes_<set>.vtu`, `steady.vtu`, `complex_modes.vtu`, `advice.vtu` | the shapes on the mesh | ParaView, pyvista |
 //! | `record.bin`, `checkpoint.bin` | record from which an interrupted run is resumed: [`record`] | `--resume` |
 //! | `parts/<analysis>/<k>-of-<n>.bin` | what one job of a job array computed of the sweeps and maps, or of the samples: [`record::Record`] | `--merge` |
@@ -26,6 +27,7 @@ mod calibration;
 mod channel;
 mod comparison;
 mod complex;
+mod contact_surface;
 mod csv;
 mod cycle_fields;
 mod damping;
@@ -81,6 +83,7 @@ pub use channel::{Channel, modal_channel};
 pub(crate) use channel::{MODAL_ABOUT, MODAL_UNIT, TIME};
 pub use comparison::{MeasuredComparison, MeasuredResponses, MeasuredRow, Placed, ResponsePair};
 pub use complex::ComplexResult;
+pub use contact_surface::{ContactFace, ContactSurface};
 pub use cycle_fields::CycleFields;
 pub use damping::{DampingRow, DampingVerdicts};
 pub use explored::SweepMethod;
@@ -110,7 +113,8 @@ pub use steady::{PairTotals, SteadyResult};
 pub use summary::{SCHEMA_VERSION, summary_json, write_summary};
 pub use sweeps::SweepResult;
 pub use transient::{
-    FieldSnapshot, Fields, GrowthCompared, RecordPiece, Recording, SpectrumOf, TransientResult,
+    ContactResponses, FieldSnapshot, Fields, GrowthCompared, RecordPiece, Recording, SpectrumOf,
+    TransientResult,
 };
 pub use transient_tables::TransientCsv;
 pub(crate) use transient_tables::TransientTables;

@@ -1,8 +1,9 @@
 //! Steady sliding.
 
-use super::NodalField;
+use super::{ContactSurface, NodalField};
 use crate::dataset::{Column, Describe, Dimension, Group, Table, Values, Variable, column};
 use crate::equilibrium::{PointState, SteadySliding};
+use crate::mesh::Cell;
 use crate::numbers::{given, significant};
 use std::collections::BTreeMap;
 
@@ -17,6 +18,8 @@ pub struct SteadyResult {
     pub points: Vec<(String, [f64; 3])>,
     /// The area that every contact point stands for \[m²\]; `None` where its stiffness is not one per area.
     pub areas: Vec<Option<f64>>,
+    /// The faces that the points are on, of pairs whose bodies touch with faces.
+    pub surfaces: Vec<ContactSurface>,
     /// Load \[N\] and sliding velocity \[m/s\] of each pair, with its name.
     pub pairs: Vec<(String, f64, f64)>,
     /// For each pair two unit vectors: where the load presses the body (the disc) and where the counter-body (the
@@ -93,7 +96,7 @@ fn point_columns<'a>() -> Vec<Column<ContactPointRow<'a>>> {
         column(
             "state",
             "text",
-            "open; sticking, where the bodies do not slide; or sliding",
+            "open; sticking, where the bodies do not slide and friction is below its limit; or sliding",
             |(.., word, _): &ContactPointRow| *word,
         ),
     ]
@@ -206,14 +209,15 @@ impl SteadyResult {
             .map(|(state, area)| area.filter(|area| *area > 0.0).map(|area| state.forces.normal / area))
     }
 
-    /// Whether each contact point is `open`, `sticking` or `sliding`: closed points stick where the sliding velocity of their pair is zero.
+    /// Whether each contact point is `open`, `sticking` or `sliding`: closed points stick where the sliding velocity of their pair is zero and they
+    /// are below their friction limit.
     pub fn states(&self) -> impl Iterator<Item = &'static str> + '_ {
         let slides: BTreeMap<&str, bool> =
             self.pairs.iter().map(|(name, _, velocity)| (&**name, *velocity != 0.0)).collect();
         self.points.iter().zip(&self.state.points).map(move |((pair, _), state)| {
             match (state.closed(), slides.get(pair.as_str())) {
                 (false, _) => "open",
-                (true, Some(false)) => "sticking",
+                (true, Some(false)) if !state.slips => "sticking",
                 (true, _) => "sliding",
             }
         })
@@ -257,5 +261,39 @@ impl SteadyResult {
             }
         }
         totals
+    }
+}
+
+/// Coordinates, faces by the surface, and their pressures and status.
+type PressedFaces = (Vec<[f64; 3]>, Vec<(String, Vec<Cell>)>, Vec<(f64, i32)>);
+
+impl SteadyResult {
+    /// Faces of all surfaces on the nodes that they have: the coordinates \[m\], their faces by the pair, and for each face in this order
+    /// its pressure ΣN/ΣA \[Pa\], zero where the points stand for no areas, and its status: 0 where no point is closed, 1 where all closed
+    /// points stick, 2 where one slides.
+    pub(crate) fn pressed_faces(&self, nodes: &[[f64; 3]]) -> PressedFaces {
+        let (mut own, mut coordinates) = (BTreeMap::new(), Vec::new());
+        let (mut parts, mut values) = (Vec::new(), Vec::new());
+        let states: Vec<&str> = self.states().collect();
+        for surface in &self.surfaces {
+            let mut cells = Vec::with_capacity(surface.faces.len());
+            for face in &surface.faces {
+                for node in face.cell.nodes() {
+                    own.entry(*node).or_insert_with(|| {
+                        coordinates.push(nodes[*node]);
+                        coordinates.len() - 1
+                    });
+                }
+                cells.push(face.cell.renumbered(|node| own[&node]));
+                let sum = |of: &dyn Fn(usize) -> f64| face.points.iter().map(|p| of(*p)).sum::<f64>();
+                let area = sum(&|p| self.areas[p].unwrap_or(0.0));
+                let force = sum(&|p| self.state.points[p].forces.normal);
+                let has = |word: &str| face.points.iter().any(|p| states[*p] == word);
+                let status = if has("sliding") { 2 } else { i32::from(has("sticking")) };
+                values.push((if area > 0.0 { force / area } else { 0.0 }, status));
+            }
+            parts.push((format!("{} {}", surface.pair, surface.name), cells));
+        }
+        (coordinates, parts, values)
     }
 }

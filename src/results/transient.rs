@@ -101,6 +101,42 @@ pub struct GrowthCompared {
     pub integrator: f64,
 }
 
+/// How near a reduced model comes to the deflections under the forces of contacts of many points.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactResponses {
+    /// The relative error that was asked for.
+    pub tolerance: f64,
+    /// The largest of random motions, in the norm of strain energy.
+    pub error: f64,
+    /// How many.
+    pub probes: usize,
+}
+
+impl ContactResponses {
+    /// The part of all such motions that has no larger error with a probability of 95 %: q with qᵐ = 0.05 for m motions.
+    pub fn share(&self) -> f64 {
+        0.05f64.powf(1.0 / self.probes.max(1) as f64)
+    }
+
+    fn group(&self) -> Group<'_> {
+        Group::new("contact_responses", "deflections under contact forces in the reduced model")
+            .value("tolerance", "1", "relative error that was asked for", self.tolerance)
+            .value(
+                "error",
+                "1",
+                "largest relative error of random motions, in the norm of strain energy",
+                self.error,
+            )
+            .value("probes", "1", "random motions", self.probes)
+            .value(
+                "share",
+                "1",
+                "part of such motions with no larger error, with a probability of 95 %",
+                self.share(),
+            )
+    }
+}
+
 /// A run in time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TransientResult {
@@ -116,6 +152,8 @@ pub struct TransientResult {
     pub reduced: Option<[usize; 2]>,
     /// A reduced model beside the full one.
     pub reduced_check: Option<ReducedCheck>,
+    /// The deflections under contact forces of a model that is reduced with many contact points.
+    pub contact_responses: Option<ContactResponses>,
     /// Recorded channels.
     pub channels: Vec<Channel>,
     /// The channels shown in the pictures: acceleration, friction, and the force in a load cell, those of them
@@ -176,6 +214,7 @@ impl Describe for TransientResult {
             .with(set_valued)
             .optional("reduced", reduced)
             .optional("reduced_check", self.reduced_check.as_ref().map(ReducedCheck::group))
+            .optional("contact_responses", self.contact_responses.as_ref().map(ContactResponses::group))
             .table(Table::of("channels", "channel", &channel_columns(), &self.channels))
             .value(
                 "fundamental_hz",

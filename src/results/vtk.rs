@@ -3,6 +3,9 @@
 //! Real modes are `mode_01`, `mode_02` … \[1/√kg\], mass-normalised. Complex modes are `mode_01_re` and `mode_01_im`:
 //! the motion is Re(φ e^{iωt}) = re cos ωt − im sin ωt, which ParaView's calculator animates. The cell array `part`
 //! counts the parts from 0 in the order of the case.
+//!
+//! `contact.vtu` has the faces that carry contact points, with the cell arrays `pressure` \[Pa\] and `status`: 0 open, 1 sticking, 2 sliding; its `part`
+//! counts the surfaces that are connected, such as those of two pads.
 
 use super::folder::{FileNames, refusal};
 use super::{
@@ -14,7 +17,7 @@ use crate::linalg::c64;
 use crate::mesh::Cell;
 use std::path::Path;
 use vtkio::model::{
-    Attribute, Attributes, ByteOrder, CellType, Cells, DataSet, UnstructuredGridPiece, Version,
+    Attribute, Attributes, ByteOrder, CellType, Cells, DataSet, IOBuffer, UnstructuredGridPiece, Version,
     VertexNumbers, Vtk,
 };
 
@@ -42,6 +45,12 @@ pub fn write_vtk(dir: &Path, results: &RunResults) -> Result<()> {
     if let Some(steady) = results.get::<SteadyResult>() {
         let vectors = vec![("displacement".to_string(), displacement(&steady.displacement))];
         write_grid(dir, "steady.vtu", geometry, vectors)?;
+        let (nodes, surfaces, values) = steady.pressed_faces(&geometry.nodes);
+        if !surfaces.is_empty() {
+            let (pressure, status) = values.into_iter().unzip::<f64, i32, Vec<f64>, Vec<i32>>();
+            let cell = vec![scalar("pressure", pressure), scalar("status", status)];
+            write_arrays(dir, "contact.vtu", &Geometry::new(nodes, surfaces), [Vec::new(), cell])?;
+        }
     }
     if let Some(complex) = results.get::<ComplexResult>() {
         let vectors = numbered(complex.modes.modes.len(), |k, number| {
@@ -53,7 +62,8 @@ pub fn write_vtk(dir: &Path, results: &RunResults) -> Result<()> {
     if let Some(sensitivity) = results.get::<SensitivityResult>() {
         let fields: Vec<PointScalar> = sensitivity.modes.iter().flat_map(advice).collect();
         if !fields.is_empty() {
-            write_arrays(dir, "advice.vtu", geometry, scalars(fields))?;
+            let fields = fields.into_iter().map(|(name, values)| scalar(name, values)).collect();
+            write_arrays(dir, "advice.vtu", geometry, [fields, Vec::new()])?;
         }
     }
     Ok(())
@@ -94,26 +104,30 @@ fn advice(mode: &ModeSensitivity) -> Vec<PointScalar> {
     fields
 }
 
-fn scalars(fields: Vec<PointScalar>) -> Vec<Attribute> {
-    let scalar = |(name, values): PointScalar| {
-        Attribute::DataArray(vtkio::model::DataArray::scalars(name, 1).with_data(values))
-    };
-    fields.into_iter().map(scalar).collect()
+fn scalar<T>(name: impl Into<String>, values: Vec<T>) -> Attribute
+where
+    IOBuffer: From<Vec<T>>,
+{
+    Attribute::DataArray(vtkio::model::DataArray::scalars(name, 1).with_data(values))
 }
 
 fn write_grid(dir: &Path, name: &str, geometry: &Geometry, vectors: Vec<PointVector>) -> Result<()> {
     let vector = |(name, values): PointVector| {
         Attribute::DataArray(vtkio::model::DataArray::vectors(name).with_data(flatten(&values)))
     };
-    write_arrays(dir, name, geometry, vectors.into_iter().map(vector).collect())
+    write_arrays(dir, name, geometry, [vectors.into_iter().map(vector).collect(), Vec::new()])
 }
 
-fn write_arrays(dir: &Path, name: &str, geometry: &Geometry, point: Vec<Attribute>) -> Result<()> {
+/// Arrays of the points and of the cells.
+fn write_arrays(
+    dir: &Path,
+    name: &str,
+    geometry: &Geometry,
+    [point, mut cell]: [Vec<Attribute>; 2],
+) -> Result<()> {
     let part: Vec<i32> = geometry.part_of_cell.iter().map(|p| *p as i32).collect();
-    let data = Attributes {
-        point,
-        cell: vec![Attribute::DataArray(vtkio::model::DataArray::scalars("part", 1).with_data(part))],
-    };
+    cell.push(scalar("part", part));
+    let data = Attributes { point, cell };
     let piece =
         UnstructuredGridPiece { points: flatten(&geometry.nodes).into(), cells: cells(geometry), data };
     let grid = Vtk {
@@ -161,7 +175,7 @@ fn cells(geometry: &Geometry) -> Cells {
 mod tests {
     use super::*;
     use crate::job::sample;
-    use vtkio::model::{IOBuffer, Piece};
+    use vtkio::model::Piece;
 
     #[test]
     fn every_kind_of_cell_has_its_type() {

@@ -83,6 +83,33 @@ fn nothing_grows_in_bodies_that_nothing_holds() {
     }
 }
 
+/// Growth below the resolution of an eigenvalue, of all sizes of growth, backward error and condition, is never called unstable, above it always.
+#[test]
+fn growth_below_the_resolution_is_undecided() {
+    let [mass, stiffness] = free_graph(1, false, 1.0, 3);
+    let n = mass.nrows();
+    let mode = modes(&system(&mass, &Mat::zeros(n, n), &stiffness), [0.01, 1.0]).modes.pop().unwrap();
+    let mut random = Random::seeded(8);
+    let mut undecided = 0;
+    for _ in 0..2000 {
+        let mut power = |low: f64, high: f64| 10f64.powf(random.between(low, high));
+        let (size, growth) = (power(0.0, 6.0), power(-12.0, -2.0));
+        let mut mode = mode.clone();
+        (mode.backward_error, mode.condition, mode.uncertainty) =
+            (power(-16.0, -10.1), power(0.0, 5.0), power(-16.0, -9.0) * size);
+        (mode.eigenvalue, mode.eigenvalue_error) = (c64::new(growth * size, size), 1e-12);
+        let resolved = mode.backward_error * mode.condition < growth && mode.uncertainty < growth * size;
+        let grows = super::unstable(mode.eigenvalue);
+        match mode.verdict() {
+            Verdict::Unstable => assert!(resolved && grows, "{mode:?}"),
+            Verdict::Undecided => assert!(!resolved, "{mode:?}"),
+            verdict => assert!(verdict == Verdict::Stable && !grows, "{mode:?}"),
+        }
+        undecided += usize::from(mode.verdict() == Verdict::Undecided);
+    }
+    assert!(undecided > 100, "{undecided}");
+}
+
 #[test]
 fn a_drift_is_zero_and_its_friction_decides_what_grows() {
     // m λ² + c λ = 0: a mass on a dashpot that nothing holds, and one that pushes.

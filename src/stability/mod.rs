@@ -13,6 +13,7 @@ mod band;
 mod basis;
 mod budget;
 mod certificate;
+mod changed;
 mod closed;
 mod compact;
 mod complex;
@@ -40,6 +41,7 @@ mod tests;
 pub use advice::PointRates;
 pub use band::Band;
 pub use certificate::{Certificate, CloseCall, SLOWEST_GROWTH, certified_modes};
+pub use changed::{StiffnessChange, changed_eigenvalues};
 pub use closed::ClosedContact;
 pub use complex::{complex_eigenvalues, complex_modes};
 pub use family::{Family, FamilyCheck, FamilyFrame, FamilyModes, SlidingState};
@@ -184,8 +186,15 @@ impl ComplexMode {
     /// become one, λ being as exact there as the root of round-off.
     fn within_error(&self) -> bool {
         let size = self.eigenvalue.norm();
-        let error = self.uncertainty.max(ROUNDING * self.condition * size);
+        let error = self.resolution();
         error > ROUND_OFF * size && self.eigenvalue.re.abs() <= error
+    }
+
+    /// What λ is resolved to \[1/s\]: its uncertainty, and at least what the backward error and a few roundings make of it by its condition,
+    /// max(η, 10 ε) κ |λ|.
+    pub fn resolution(&self) -> f64 {
+        let relative = self.backward_error.max(ROUNDING) * self.condition;
+        self.uncertainty.max(relative * self.eigenvalue.norm())
     }
 }
 
@@ -204,7 +213,7 @@ pub enum Verdict {
     Stable,
     /// σ exceeds round-off and the error of λ.
     Unstable,
-    /// |σ| is within the error of λ.
+    /// |σ| is within the error of λ, [`ComplexMode::resolution`].
     Undecided,
     /// λ itself is not accurate ([`ComplexMode::accurate`]).
     Inaccurate,

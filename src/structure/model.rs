@@ -3,6 +3,7 @@
 use super::elements::{MassElement, SpringElement};
 use super::part::{Elements, Part, boxed};
 use super::properties::{PointMass, Rotation, Shell, Spring};
+use std::collections::BTreeSet;
 
 /// A structure: nodes and all that hangs on them. Degrees of freedom are (ux, uy, uz, rx, ry, rz) at every node.
 #[derive(Debug, Clone, Default)]
@@ -53,6 +54,18 @@ impl Model {
             let own = part.nodes();
             nodes.iter().all(|n| own.binary_search(n).is_ok())
         })
+    }
+
+    /// The shell or solid that has all of `nodes`, or the solids that have them together; none where there are no such parts.
+    pub fn parts_with(&self, nodes: &[usize]) -> Vec<&Part> {
+        if let Some(part) = self.part_with(nodes) {
+            return vec![part];
+        }
+        let own = |part: &&Part| part.nodes().iter().any(|node| nodes.binary_search(node).is_ok());
+        let solids: Vec<&Part> =
+            self.parts.iter().filter(|part| part.kind.dimension() == 3).filter(own).collect();
+        let all: BTreeSet<usize> = solids.iter().flat_map(|part| part.nodes()).collect();
+        if nodes.iter().all(|node| all.contains(node)) { solids } else { Vec::new() }
     }
 
     /// The shells among its parts.

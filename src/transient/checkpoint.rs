@@ -4,6 +4,7 @@ use super::energy_balance::Work;
 use super::march::{Control, Marched};
 use super::model::TransientModel;
 use super::reaction::Bristles;
+use super::slopes::PointSlopes;
 use super::state::State;
 use crate::error::{Error, Fault, Result};
 use faer::Mat;
@@ -62,6 +63,7 @@ impl Checkpoint {
         state.modal.iter().for_each(|modal| self.put_columns("modal", modal));
         self.put("reaction", &state.reaction);
         self.put("approaches", &state.interface.approaches);
+        state.slopes.iter().for_each(|slopes| self.put("slopes", &slopes.numbers));
         let bristles = state.bristles.iter();
         let kept = bristles.flat_map(|b| [b.bent[0], b.bent[1], f64::from(u8::from(b.stick))]);
         self.put("bristles", &kept.collect::<Vec<f64>>());
@@ -88,6 +90,11 @@ impl Checkpoint {
             *bristles = Bristles { bent: [kept[0], kept[1]], stick: kept[2] != 0.0 };
         }
         self.get("approaches", &mut state.interface.approaches)?;
+        if self.arrays.contains_key("slopes") {
+            let mut numbers = vec![0.0; PointSlopes::count(model)];
+            self.get("slopes", &mut numbers)?;
+            state.slopes = Some(PointSlopes { numbers }.into());
+        }
         state.act(model, time);
         state.derive(model);
         let control = Control { level, fastest, parts };

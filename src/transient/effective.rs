@@ -1,5 +1,6 @@
 //! The matrix of an implicit step, factorised once.
 
+use super::interface::column;
 use super::model::TransientModel;
 use super::products::Diagonal;
 use super::scheme::Weights;
@@ -9,7 +10,7 @@ use crate::linalg::dense::product;
 use crate::linalg::factor::{HalfSolutions, SymbolicFactor, System, UnsymmetricFactor, factorize};
 use crate::linalg::lu::Lu;
 use crate::linalg::multivector::{combine, gram};
-use faer::{Accum, Mat, MatMut, MatRef};
+use faer::{Accum, Mat, MatMut};
 use rayon::prelude::*;
 
 /// A = (1−α_m)/(β Δt²) M + (1−α_f) c₁ C + (1−α_f) K = A₀ + B E Bᵀ: the modal part of C, E = (1−α_f) c₁ diag(c), apart from
@@ -265,10 +266,6 @@ impl Effective {
         }
         self.inverse.backward(&mut self.half, increment);
     }
-}
-
-fn column(x: &[f64]) -> MatRef<'_, f64> {
-    MatRef::from_column_major_slice(x, x.len(), 1)
 }
 
 fn copy(of: &Mat<f64>, to: &mut [f64]) {

@@ -4,6 +4,7 @@ use super::model::TransientModel;
 use super::rows::sums;
 use super::scheme::Weights;
 use super::state::State;
+use faer::Mat;
 use std::ops::Range;
 
 /// The work of one step or, summed, of many \[J\].
@@ -100,14 +101,15 @@ impl Work {
             gyroscopic += skew.gyroscopic;
             force_change += skew.change;
         }
+        let after = model.travels().then(|| {
+            let mut after = Mat::zeros(model.n_directions(), 1);
+            from.interface.motions(model, to.motion.subcols(0, 1), after.as_mut());
+            after
+        });
         for (d, (old, new)) in from.reaction.iter().zip(&to.reaction).enumerate() {
             // Δu along the directions of both ends, which differ where a contact travels.
             let ahead = to.along[(d, 0)] - to.before[(d, 0)];
-            let behind = if model.travels() {
-                from.interface.motion(model, d, u1) - from.along[(d, 0)]
-            } else {
-                ahead
-            };
+            let behind = after.as_ref().map_or(ahead, |after| after[(d, 0)] - from.along[(d, 0)]);
             let mean = 0.5 * (behind * old + ahead * new);
             force_change -= ahead * new - behind * old;
             match (model.points.get(d / 3), d % 3) {

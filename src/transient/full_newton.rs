@@ -1,6 +1,7 @@
 //! One implicit step by Newton's method on the whole system: slow and plain, to compare with.
 
 use super::along::moved_most;
+use super::interface::column;
 use super::model::TransientModel;
 use super::reaction::{Reaction, Since, resistance};
 use super::scheme::Weights;
@@ -56,8 +57,9 @@ impl<'a> FullNewton<'a> {
         resistance: &[f64],
     ) -> Vec<f64> {
         let model = self.model;
-        let mut along = vec![0.0; model.n_directions()];
-        to.interface.motions(model, delta, &mut along);
+        let mut along = Mat::zeros(model.n_directions(), 1);
+        to.interface.motions(model, column(delta), along.as_mut());
+        let along = along.col_as_slice(0);
         let q: Vec<f64> = along.iter().zip(&at[0]).map(|(x, p)| p + x).collect();
         let rate: Vec<f64> = along.iter().zip(&at[1]).map(|(x, v)| v + self.weights.rate * x).collect();
         let duration = self.weights.step;
@@ -132,7 +134,7 @@ impl Solver for FullNewton<'_> {
         let mut delta: Vec<f64> = from.motion.col_as_slice(2).iter().map(|a| a / weights.inertia).collect();
         let mut force = from.reaction.clone();
         let mut length = 0.0;
-        let mut moved = vec![0.0; model.n_directions()];
+        let mut moved = Mat::zeros(model.n_directions(), 1);
         let mut rho = self.residual([&delta, &force], &given, &at, [from, to], &resistance);
         for iteration in 1..=ITERATIONS {
             to.iterations = iteration;
@@ -143,7 +145,7 @@ impl Solver for FullNewton<'_> {
             if !step.norm_max().is_finite() {
                 return Err(StepFailure::NotFinite);
             }
-            to.interface.motions(model, &step.col_as_slice(0)[..n], &mut moved);
+            to.interface.motions(model, step.subrows(0, n), moved.as_mut());
             let last = [delta.clone(), force.clone()];
             let mut damping = 1.0;
             // Halved while the next step, with this tangent, would not be shorter: Deuflhard's natural monotonicity test.
@@ -168,7 +170,7 @@ impl Solver for FullNewton<'_> {
                 return Ok(());
             }
         }
-        Err(StepFailure::Newton { length, point: moved_most(&moved, model) })
+        Err(StepFailure::Newton { length, point: moved_most(moved.col_as_slice(0), model) })
     }
 }
 

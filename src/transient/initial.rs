@@ -78,6 +78,12 @@ impl State {
 
     /// q; `None` in equilibrium.
     fn unbalanced(&self, model: &TransientModel<'_>) -> Option<Mat<f64>> {
+        let (q, largest) = self.residual(model);
+        (q.norm_max() > BALANCED * largest).then_some(q)
+    }
+
+    /// q, and the largest of the forces in it.
+    pub(super) fn residual(&self, model: &TransientModel<'_>) -> (Mat<f64>, f64) {
         let n = model.n();
         let mut reactions = vec![0.0; n];
         self.interface.add_reactions(model, -1.0, &self.reaction, &mut reactions);
@@ -91,8 +97,17 @@ impl State {
         let elastic = self.elastic.col_as_slice(0);
         let terms = [&forces[..], &reactions, elastic];
         let largest = terms.into_iter().flatten().fold(0.0, |most: f64, force| most.max(force.abs()));
-        let q = Mat::from_fn(n, 1, |i, _| forces[i] + reactions[i] - elastic[i]);
-        (q.norm_max() > BALANCED * largest).then_some(q)
+        (Mat::from_fn(n, 1, |i, _| forces[i] + reactions[i] - elastic[i]), largest)
+    }
+}
+
+impl TransientModel<'_> {
+    /// The same model in equilibrium at a steady state that its coordinates have but for a little: what is left is taken from the load.
+    #[must_use]
+    pub fn balanced(mut self, steady: &SteadySliding) -> Self {
+        let (off, _) = State::steady(&self, steady).residual(&self);
+        self.load.to_mut().iter_mut().zip(off.col_as_slice(0)).for_each(|(load, off)| *load -= off);
+        self
     }
 }
 

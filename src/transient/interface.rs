@@ -3,6 +3,9 @@
 use super::model::TransientModel;
 use super::track::Shares;
 use crate::linalg::SparseVector;
+use crate::linalg::multivector::gram;
+use faer::{ColRef, Mat, MatMut, MatRef};
+use std::ops::Range;
 
 /// D(t): the directions in which contacts and imported terms act, as mixes of the constant columns P of the model; and how
 /// close the points are.
@@ -70,21 +73,35 @@ impl TravellingInterface {
         }
     }
 
-    /// Dᵀx.
-    pub(super) fn motions(&self, model: &TransientModel<'_>, x: &[f64], out: &mut [f64]) {
-        out.iter_mut().enumerate().for_each(|(index, out)| *out = self.motion(model, index, x));
-    }
-
-    /// One entry of Dᵀx.
-    pub(super) fn motion(&self, model: &TransientModel<'_>, index: usize, x: &[f64]) -> f64 {
-        parts(&self.mixes[index]).map(|(column, share)| share * model.columns[column].dot(x)).sum()
+    /// DᵀX of every column.
+    pub(super) fn motions(&self, model: &TransientModel<'_>, x: MatRef<'_, f64>, mut out: MatMut<'_, f64>) {
+        let lifted = model.lifted(x);
+        let acted = lifted.as_ref().map_or(x, Mat::as_ref);
+        let points = 3 * model.points.len();
+        for k in 0..x.ncols() {
+            let [own, acted] = [x, acted].map(|x| slice(x.col(k)));
+            for (index, mix) in self.mixes.iter().enumerate() {
+                let of = if index < points { acted } else { own };
+                out[(index, k)] =
+                    parts(mix).map(|(column, share)| share * model.columns[column].dot(of)).sum();
+            }
+        }
     }
 
     /// x += factor · D r.
     pub(super) fn add_reactions(&self, model: &TransientModel<'_>, factor: f64, r: &[f64], x: &mut [f64]) {
-        for (mix, r) in self.mixes.iter().zip(r).filter(|(_, r)| **r != 0.0) {
-            parts(mix).for_each(|(column, share)| model.columns[column].add_to(factor * share * r, x));
-        }
+        let add = |range: Range<usize>, x: &mut [f64]| {
+            for (mix, r) in self.mixes[range.clone()].iter().zip(&r[range]).filter(|(_, r)| **r != 0.0) {
+                parts(mix).for_each(|(column, share)| model.columns[column].add_to(factor * share * r, x));
+            }
+        };
+        let points = 3 * model.points.len();
+        let Some(basis) = model.basis else { return add(0..r.len(), x) };
+        let mut acting = Mat::zeros(basis.nrows(), 1);
+        add(0..points, acting.col_as_slice_mut(0));
+        add(points..r.len(), x);
+        let seen = gram(basis.as_ref(), acting.as_ref());
+        x.iter_mut().zip(seen.col_as_slice(0)).for_each(|(x, force)| *x += force);
     }
 
     /// A direction as it is now.
@@ -93,6 +110,16 @@ impl TravellingInterface {
             .flat_map(|(column, share)| model.columns[column].iter().map(move |(i, v)| (i, share * v)));
         SparseVector::from_entries(entries)
     }
+}
+
+/// A column of a matrix.
+fn slice(x: ColRef<'_, f64>) -> &[f64] {
+    x.try_as_col_major().expect("the columns of a matrix are in one piece").as_slice()
+}
+
+/// A vector as a matrix of one column.
+pub(super) fn column(x: &[f64]) -> MatRef<'_, f64> {
+    MatRef::from_column_major_slice(x, x.len(), 1)
 }
 
 /// One column as it is.

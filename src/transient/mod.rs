@@ -3,7 +3,8 @@
 //!
 //! [`Scheme`] is the generalised-α family, [`TransientModel`] what it needs of a system, [`march`] the run. The structure is
 //! factorised once for a time step; contact is condensed exactly onto the few directions in which it acts, so that a
-//! step costs one solution with sparse factors and Newton's method on a small dense system (`condensed`). Newton's method
+//! step costs one solution with sparse factors and Newton's method on a small dense system (`condensed`). A reduced model with more contact
+//! points than coordinates has Newton's method on these (`reduced`). Newton's method
 //! on the whole is kept beside it to compare with (`full_newton`). Friction that is set-valued at rest is an unknown of both, so
 //! that points stick, turn round and slip again without regularisation. [`Work`] is the balance of energy. A [`Checkpoint`] holds
 //! the state from which a run resumes as if it had never stopped; a [`Watch`] detects when contact points open, close and turn.
@@ -22,9 +23,11 @@ mod march;
 mod model;
 mod products;
 mod reaction;
+mod reduced;
 mod rows;
 mod scheme;
 mod skew;
+mod slopes;
 mod solver;
 mod state;
 mod stepper;

@@ -6,12 +6,14 @@ use super::scheme::Weights;
 use super::track::Track;
 use crate::equilibrium::{SteadySliding, directions, tangent_stiffness};
 use crate::error::{Error, Fault, Result};
+use crate::linalg::multivector::expand;
 use crate::linalg::sparse::add_scaled;
 use crate::linalg::{SparseMatrix, SparseVector};
 use crate::system::{
-    ContactForces, ContactLaw, ContactMotion, ContactTangent, Damping, FrictionAtRest, Skew, System,
+    ContactForces, ContactLaw, ContactMotion, ContactPair, ContactTangent, Damping, FrictionAtRest, Skew,
+    System,
 };
-use faer::Mat;
+use faer::{Mat, MatRef};
 use std::borrow::Cow;
 
 /// M ü + (C + G) u̇ + (K + K_σ + N) u + D r = f: the structure, its sparse skew parts G and N, and the directions D in which contacts and
@@ -27,10 +29,12 @@ pub struct TransientModel<'a> {
     /// Products with M, K and C.
     pub(super) products: Products,
     /// f \[N, N m\].
-    pub(super) load: &'a [f64],
+    pub(super) load: Cow<'a, [f64]>,
     /// P, what the directions D are made of: g, t₁, t₂ of every contact point, at each of its stations where it travels,
     /// then the imported ones.
     pub(super) columns: Vec<&'a SparseVector>,
+    /// V, where u = V q are the degrees of freedom that the contact points act on and q those of the model.
+    pub(super) basis: Option<&'a Mat<f64>>,
     pub(super) points: Vec<Touch<'a>>,
     /// k and c between the imported directions.
     pub(super) coupling: Option<[&'a Mat<f64>; 2]>,
@@ -77,8 +81,28 @@ impl<'a> TransientModel<'a> {
     /// # Errors
     /// Input: hysteretic damping, which means something in harmonic motion only.
     pub fn new(system: &'a System, steady: &SteadySliding) -> Result<Self> {
+        TransientModel::with_contacts(system, (&system.pairs, None), steady)
+    }
+
+    /// The same of a `system` without contacts, and of `pairs` whose points act on V q, `basis` being V.
+    ///
+    /// # Errors
+    /// As [`TransientModel::new`].
+    pub fn reduced(
+        system: &'a System,
+        (pairs, basis): (&'a [ContactPair], &'a Mat<f64>),
+        steady: &SteadySliding,
+    ) -> Result<Self> {
+        TransientModel::with_contacts(system, (pairs, Some(basis)), steady)
+    }
+
+    fn with_contacts(
+        system: &'a System,
+        (contacts, basis): (&'a [ContactPair], Option<&'a Mat<f64>>),
+        steady: &SteadySliding,
+    ) -> Result<Self> {
         refuse_hysteretic(system)?;
-        let pairs = system.pairs.iter().enumerate();
+        let pairs = contacts.iter().enumerate();
         let points: Vec<Touch> = pairs
             .flat_map(|(k, pair)| {
                 pair.points.iter().map(move |point| Touch {
@@ -101,17 +125,23 @@ impl<'a> TransientModel<'a> {
             skew: system.skew(),
             products: Products::new(mass, &stiffness, damping),
             stiffness,
-            load: &system.load,
-            columns: system.points().flat_map(|(_, point)| directions(point)).chain(imported).collect(),
+            load: Cow::Borrowed(&system.load),
+            columns: contacts
+                .iter()
+                .flat_map(|pair| &*pair.points)
+                .flat_map(directions)
+                .chain(imported)
+                .collect(),
+            basis,
             points,
             coupling: system.coupling.as_ref().map(|rest| [&rest.stiffness, &rest.damping]),
-            velocities: system.pairs.iter().map(|pair| pair.sliding_velocity).collect(),
-            profiles: vec![TimeProfile::Constant; system.pairs.len()],
-            tracks: vec![None; system.pairs.len()],
+            velocities: contacts.iter().map(|pair| pair.sliding_velocity).collect(),
+            profiles: vec![TimeProfile::Constant; contacts.len()],
+            tracks: vec![None; contacts.len()],
             pushes: Vec::new(),
-            loadings: vec![None; system.pairs.len()],
+            loadings: vec![None; contacts.len()],
             approaches: steady.approach.clone(),
-            loads: vec![None; system.pairs.len()],
+            loads: vec![None; contacts.len()],
         })
     }
 
@@ -215,6 +245,11 @@ impl<'a> TransientModel<'a> {
             format!(", at point {number} of the contact `{name}`, at ({x:.3}, {y:.3}, {z:.3}) mm"),
             (name, law.at_rest()),
         )
+    }
+
+    /// V q, which the contact points act on; `None` where that is q.
+    pub(super) fn lifted(&self, q: MatRef<'_, f64>) -> Option<Mat<f64>> {
+        self.basis.map(|basis| expand(basis.as_ref(), q))
     }
 
     /// Whether a direction changes in time.

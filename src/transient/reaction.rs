@@ -262,7 +262,30 @@ impl Reaction {
         }
     }
 
-    fn holds(&self, point: usize) -> bool {
+    /// ∂R/∂q + c₁ ∂R/∂q̇ of a point along its directions, c₁ being `rate`, and ∂R/∂a of one whose pair keeps its load.
+    pub(super) fn slopes(&self, point: usize, rate: f64) -> ([[f64; 3]; 3], [f64; 3]) {
+        let block = &self.blocks[point];
+        let slope = |own: usize, other: usize| block.stiffness[own][other] + rate * block.damping[own][other];
+        ([0, 1, 2].map(|own| [0, 1, 2].map(|other| slope(own, other))), self.by_approach[point])
+    }
+
+    /// ∂a/∂q + c₁ ∂a/∂q̇ of a pair by direction, c₁ being `rate`; none where it keeps its approach.
+    pub(super) fn following(&self, pair: usize, rate: f64) -> impl Iterator<Item = (usize, f64)> + '_ {
+        self.follows[pair].iter().map(move |(k, [by_q, by_rate])| (*k, by_q + rate * by_rate))
+    }
+
+    /// (I − ∂R/∂r)⁻¹ x of a point.
+    pub(super) fn resolved(&self, point: usize, [normal, x, y]: [f64; 3]) -> [f64; 3] {
+        if !self.holds(point) {
+            return [normal, x, y];
+        }
+        let h = self.by_friction[point].map(|row| row.map(|h| HELD * h));
+        let [a, b, c, d] = [1.0 - h[0][0], -h[0][1], -h[1][0], 1.0 - h[1][1]];
+        let determinant = a * d - b * c;
+        [normal, (d * x - b * y) / determinant, (a * y - c * x) / determinant]
+    }
+
+    pub(super) fn holds(&self, point: usize) -> bool {
         self.by_friction[point] != [[0.0; 2]; 2]
     }
 }

@@ -7,10 +7,12 @@ use super::reaction::{Bristles, Moment, Reaction};
 use super::rows::combine;
 use super::scheme::Weights;
 use super::skew::SkewForces;
+use super::slopes::PointSlopes;
 use crate::equilibrium::SteadySliding;
 use crate::linalg::c64;
 use crate::linalg::multivector::gram;
 use faer::Mat;
+use std::sync::Arc;
 
 /// u, v and a are the columns 0, 1, 2 of `motion` and of what is derived from it.
 #[derive(Debug, Clone)]
@@ -45,6 +47,8 @@ pub struct State {
     pub(super) before: Mat<f64>,
     /// Newton's steps that its last step took.
     pub(super) iterations: usize,
+    /// What the tangent was made of with which that step ended, of a reduced model with its contacts apart.
+    pub(super) slopes: Option<Arc<PointSlopes>>,
 }
 
 impl State {
@@ -114,9 +118,7 @@ impl State {
     /// The motion that a step to here begins with, along the directions at its end.
     pub(super) fn look_back(&mut self, model: &TransientModel<'_>, from: &State) {
         if model.travels() {
-            for k in 0..3 {
-                self.interface.motions(model, from.motion.col_as_slice(k), self.before.col_as_slice_mut(k));
-            }
+            self.interface.motions(model, from.motion.as_ref(), self.before.as_mut());
         } else {
             self.before.copy_from(&from.along);
         }
@@ -194,6 +196,7 @@ impl State {
             interface: TravellingInterface::new(model),
             before: Mat::zeros(r, 3),
             iterations: 0,
+            slopes: None,
         }
     }
 
@@ -204,8 +207,6 @@ impl State {
         if let (Some(skew), Some(forces)) = (model.skew, &mut self.skew) {
             forces.derive(skew, &self.motion);
         }
-        for k in 0..3 {
-            self.interface.motions(model, self.motion.col_as_slice(k), self.along.col_as_slice_mut(k));
-        }
+        self.interface.motions(model, self.motion.as_ref(), self.along.as_mut());
     }
 }

@@ -4,6 +4,7 @@ use super::condensed::CondensedStep;
 use super::energy_balance::Work;
 use super::full_newton::FullNewton;
 use super::model::TransientModel;
+use super::reduced::ReducedStep;
 use super::rows::{chunks, combine};
 use super::scheme::{Scheme, Weights};
 use super::solver::{Solver, StepFailure};
@@ -47,9 +48,10 @@ impl<'a> Stepper<'a> {
         method: StepMethod,
     ) -> Result<Self> {
         let weights = Weights::new(scheme, step);
-        let solver: Box<dyn Solver + 'a> = match method {
-            StepMethod::Condensed => Box::new(CondensedStep::new(model, weights)?),
-            StepMethod::FullNewton => Box::new(FullNewton::new(model, weights)),
+        let solver: Box<dyn Solver + 'a> = match (model.basis, method) {
+            (Some(basis), _) => Box::new(ReducedStep::new(model, basis, weights)),
+            (None, StepMethod::Condensed) => Box::new(CondensedStep::new(model, weights)?),
+            (None, StepMethod::FullNewton) => Box::new(FullNewton::new(model, weights)),
         };
         Ok(Stepper { model, weights, solver, increment: Mat::zeros(model.n(), 1) })
     }

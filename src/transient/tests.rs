@@ -1,3 +1,4 @@
+mod apart;
 mod from_rest;
 mod held_load;
 mod skew;
@@ -338,7 +339,7 @@ fn a_loss_factor_is_refused_with_what_to_do() {
 fn a_model_reduced_to_all_it_has_moves_like_the_full_one() {
     let system = damped(3);
     let steady = solve_steady(&system, &SteadyOptions::default(), &()).unwrap();
-    let reduced = crate::reduction::reduce(&system, &steady, &dense_modes(&system, 30), &[]).unwrap();
+    let reduced = crate::reduction::reduce(&system, &steady, &dense_modes(&system, 30), &[], None).unwrap();
     let small = reduced.steady(&steady);
     let push = Push {
         direction: vector(&[(3, 40.0), (20, 50.0)]),

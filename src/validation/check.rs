@@ -92,7 +92,8 @@ impl Runs<'_> {
         if !self.done.contains_key(&key) {
             let mut case = self.case_with(set)?;
             if let (Some(model), Some(transient)) = (model, &mut case.transient) {
-                *transient = TransientAnalysis { model, compare_steps: None, ..transient.clone() };
+                *transient =
+                    TransientAnalysis { model: Some(model), compare_steps: None, ..transient.clone() };
             }
             let prepared = Prepared::new(&case)?;
             let mut histories = Histories::default();

@@ -5,6 +5,7 @@ use super::super::*;
 use crate::bounds::{Origin::*, within};
 use crate::contact::{Bristle, Coulomb, NormalLaw, SlidingLaw};
 use crate::linalg::SparseVector;
+use crate::linalg::random::Random;
 use crate::system::{Closing, System};
 use std::sync::Arc;
 
@@ -85,4 +86,36 @@ fn a_pair_at_rest_needs_a_bristle() {
     system.pairs[0].sliding_velocity = 0.0;
     let error = solve_steady(&system, &SteadyOptions::default(), &()).unwrap_err().to_string();
     assert!(error.contains("bristle"), "{error}");
+}
+
+/// A mass on springs k_x and k_z, pressed by an approach a, N = k_n a/(1 + k_n/k_z), and pushed along the face by f: it sticks elastically up to
+/// k_t f/(k_x + k_t) = μN, and has slid beyond.
+#[test]
+fn a_point_at_its_limit_has_slid() {
+    let mut random = Random::seeded(31);
+    let mut counts = [0; 2];
+    for _ in 0..200 {
+        let mut at = |low: f64, high: f64| random.between(low, high);
+        let [kx, kz, kn, kt] = [at(10.0, 1e3), at(10.0, 1e3), at(1e2, 1e4), at(1e2, 1e4)];
+        let (mu, approach) = (at(0.1, 0.8), at(1e-3, 1e-2));
+        let normal = kn * approach / (1.0 + kn / kz);
+        let force = at(0.0, 2.0) * mu * normal * (kx + kt) / kt;
+        let law = SlidingLaw {
+            bristle: Some(Bristle { stiffness: kt, damping: 0.0 }),
+            ..SlidingLaw::new(NormalLaw::linear(kn), Coulomb { mu0: mu }, 0.0)
+        };
+        let contact = point(0.0, 1.0, vector(&[(1, -1.0)]), vector(&[(0, 1.0)]), vector(&[]));
+        let k = [[kx, 0.0], [0.0, kz]];
+        let mut system = random_system(2, 1, 1.0, 1);
+        system.structure = structure(2, |i, j| f64::from(i == j), |i, j| k[i][j]);
+        system.pairs = vec![pair(vec![contact], law, Closing::Approach(approach), 0.0)];
+        system.load = vec![force, 0.0];
+        let state = solve_steady(&system, &SteadyOptions::default(), &()).unwrap();
+        let found = &state.points[0];
+        assert!(within(found.forces.normal / normal - 1.0, 1e-9, Tolerance), "{found:?} {normal}");
+        let slips = kt * force / (kx + kt) > mu * normal;
+        assert_eq!(found.slips, slips, "{found:?}");
+        counts[usize::from(slips)] += 1;
+    }
+    assert!(counts[0] > 50 && counts[1] > 50, "{counts:?}");
 }

@@ -4,6 +4,7 @@ use super::analysis::{Analysis, Planned, Scope};
 use crate::case::{Case, CeaAnalysis};
 use crate::error::Result;
 use crate::job::complex::complex_result;
+use crate::job::mesh_split::growth_without_split;
 use crate::job::part_modes::{PartsAlone, compare_with_parts};
 use crate::job::part_shares::{complex_shares, moving_discs};
 use crate::job::prepared::Prepared;
@@ -54,6 +55,15 @@ impl<'a> Planned<'a> for PlannedCea<'a> {
         if let Some(shares) = &mut complex.shares {
             let alone = PartsAlone::of(prepared, &run.results.all::<NamedModes>());
             compare_with_parts(shares, &alone, &complex.dofs, |k, i| modes[k].right[i]);
+        }
+        let found = run.timed("growth without the split of double modes", |observer| {
+            growth_without_split(&point, modes, observer)
+        });
+        match found {
+            Ok(growth) => complex.without_split = growth,
+            Err(error) => {
+                run.results.warnings.push(format!("No growth without the split of double modes: {error}"))
+            }
         }
         run.results.warnings.extend(complex.modes.warnings.iter().cloned());
         run.operating_point = Some(point.into());

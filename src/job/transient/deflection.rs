@@ -1,9 +1,12 @@
-//! How far plates bend in motion, beside their thickness.
+//! How far plates bend in motion, beside their thickness, how far solids turn, and how deep contacts are pressed.
 
+use super::depth::Depths;
+use super::rotation::Rotations;
 use super::snapshots::Snapshots;
 use crate::error::Result;
-use crate::structure::{Model, Part, Shell};
-use crate::transient::{Checkpoint, Marched};
+use crate::job::prepared::Prepared;
+use crate::structure::{Part, Shell};
+use crate::transient::{Checkpoint, Marched, TransientModel};
 use nalgebra::{Matrix3, Vector3};
 
 /// The motion is looked at this many times in a run, at equal distances.
@@ -12,11 +15,13 @@ const LOOKS: usize = 256;
 /// rises (S. P. Timoshenko & S. Woinowsky-Krieger, Theory of Plates and Shells, 1959, ch. 13).
 const LINEAR: f64 = 1.0;
 
-/// The largest deflections of the plates of a run.
+/// The largest deflections of the plates of a run, rotations of its solids and penetrations of its contacts.
 pub(super) struct Deflections<'a> {
     nodes: Snapshots<'a>,
     every: usize,
     plates: Vec<Plate<'a>>,
+    solids: Rotations<'a>,
+    contacts: Depths,
 }
 
 /// A plate: its nodes, where they are in its mean plane, and its normal.
@@ -34,18 +39,23 @@ struct Plate<'a> {
 }
 
 impl<'a> Deflections<'a> {
-    /// Those of the plates of `model` in a run of so many steps.
-    pub(super) fn new(model: &'a Model, nodes: Snapshots<'a>, steps: usize) -> Self {
+    /// Those of the parts and contacts of `prepared` in a run of so many steps.
+    pub(super) fn new(prepared: &'a Prepared<'_>, nodes: Snapshots<'a>, steps: usize) -> Self {
+        let model = &prepared.model;
         let plates =
             model.shells().filter_map(|(part, shell)| Plate::new(part, shell, &model.nodes)).collect();
-        Deflections { nodes, every: steps.div_ceil(LOOKS).max(1), plates }
+        let (solids, contacts) = (Rotations::new(model), Depths::new(prepared));
+        Deflections { nodes, every: steps.div_ceil(LOOKS).max(1), plates, solids, contacts }
     }
 
-    /// Looks at the motion, where it is time for it.
-    pub(super) fn take(&mut self, marched: &Marched) {
-        if self.plates.is_empty() || !marched.step.is_multiple_of(self.every) {
+    /// Looks at the motion, where it is time for it, and at the contacts.
+    pub(super) fn take(&mut self, model: &TransientModel<'_>, marched: &Marched) {
+        self.contacts.take(model, marched);
+        let none = self.plates.is_empty() && self.solids.are_none();
+        if none || !marched.step.is_multiple_of(self.every) {
             return;
         }
+        self.solids.take(&self.nodes.of_all(marched.state.motion.col_as_slice(0)));
         let [moved, _] = self.nodes.take(&marched.state);
         for plate in &mut self.plates {
             let moved = plate
@@ -61,6 +71,8 @@ impl<'a> Deflections<'a> {
     pub(super) fn put(&self, checkpoint: &mut Checkpoint) {
         let largest: Vec<f64> = self.plates.iter().map(|plate| plate.largest).collect();
         checkpoint.put("deflections", &largest);
+        self.solids.put(checkpoint);
+        self.contacts.put(checkpoint);
     }
 
     /// Goes on from what was put away.
@@ -68,10 +80,11 @@ impl<'a> Deflections<'a> {
         let mut largest = vec![0.0; self.plates.len()];
         checkpoint.get("deflections", &mut largest)?;
         self.plates.iter_mut().zip(largest).for_each(|(plate, largest)| plate.largest = largest);
-        Ok(())
+        self.solids.restore(checkpoint)?;
+        self.contacts.restore(checkpoint)
     }
 
-    /// Plates that bend by more than the model can mean.
+    /// Plates that bend, solids that turn and contacts that are pressed by more than the model can mean.
     pub(super) fn warnings(&self) -> Vec<String> {
         let words = |plate: &Plate| {
             let (name, thickness) = (&plate.part.name, plate.shell.thickness);
@@ -85,7 +98,8 @@ impl<'a> Deflections<'a> {
             )
         };
         let far = |plate: &&Plate| plate.largest > LINEAR * plate.shell.thickness;
-        self.plates.iter().filter(far).map(words).collect()
+        let plates = self.plates.iter().filter(far).map(words);
+        plates.chain(self.solids.warnings()).chain(self.contacts.warnings()).collect()
     }
 }
 
@@ -127,5 +141,40 @@ impl<'a> Plate<'a> {
         let whole = self.inverse * self.places.iter().zip(&along).map(|(p, w)| p * *w).sum::<Vector3<f64>>();
         let bent = self.places.iter().zip(&along).map(|(p, w)| (w - whole.dot(p)).abs());
         bent.fold(0.0, f64::max)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::case::Case;
+    use crate::job::{Prepared, Selection, analyse};
+    use crate::results::TransientResult;
+
+    /// A pad of solids under a blow that presses it through the disc and turns it, and under one that it bears.
+    #[test]
+    fn solids_that_turn_and_contacts_that_are_pressed_through_are_warned_of() {
+        let meshes = concat!(env!("CARGO_MANIFEST_DIR"), "/meshes/");
+        let case = include_str!("../../../validation/solid-brake/case.toml")
+            .replace("../../meshes/", meshes)
+            .replace("loss_factor = 0.02", "rayleigh = { beta = \"1 us\" }")
+            .replace("8 kHz", "2 kHz")
+            .replace("[modes.disc]\nparts = [\"disc\"]\nbelow = \"6 kHz\"\n", "");
+        let warnings = |force: &str| {
+            let motion = format!(
+                "[transient]\nduration = \"0.5 ms\"\ntime_step = \"10 us\"\n\
+                 push.blow = {{ on = \"pad_back\", force = {force}, duration = \"1 ms\" }}\n"
+            );
+            let case = Case::parse("case.toml", &format!("{case}{motion}"), ".".into()).unwrap();
+            let prepared = Prepared::new(&case).unwrap();
+            let mut results = analyse(&prepared, Selection::Listed, &mut |_| Ok(()), &()).unwrap();
+            results.take::<TransientResult>().unwrap().warnings.join("\n")
+        };
+        let far = warnings("[\"8 MN\", 0, \"-30 MN\"]");
+        assert!(
+            far.contains("the solid pad turns by") && far.contains("the contact face is pressed"),
+            "{far}"
+        );
+        let near = warnings("[\"8 N\", 0, \"-30 N\"]");
+        assert!(!near.contains("turns by") && !near.contains("is pressed"), "{near}");
     }
 }

@@ -23,7 +23,7 @@ pub(super) struct HistoryWriter<'a, 'k> {
     snapshots: Option<Snapshots<'a>>,
     /// The motion over the last periods, and the highest frequency \[Hz\] that it may have.
     pub(super) cycle: (HarmonicFields<'a>, f64),
-    /// How far plates bend.
+    /// What the model cannot mean.
     pub(super) deflections: Deflections<'a>,
     /// The first row that is at hand.
     first: usize,
@@ -105,7 +105,7 @@ impl<'a, 'k> HistoryWriter<'a, 'k> {
         self.recorder.take(marched);
         self.snapshot(marched)?;
         self.cycle.0.take(marched);
-        self.deflections.take(marched);
+        self.deflections.take(self.recorder.model, marched);
         if marched.step == self.cycle.0.ready() {
             self.flush(marched)?;
             return self.begin_cycle();

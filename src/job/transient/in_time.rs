@@ -1,6 +1,8 @@
 //! Where a run in time starts from.
 
+use crate::case::{ModelChoice, TransientAnalysis};
 use crate::job::operating_point::OperatingPoint;
+use crate::reduction::has_many_points;
 use crate::results::{ComplexResult, Geometry};
 
 /// A run in time from steady sliding.
@@ -11,4 +13,22 @@ pub struct InTime<'a> {
     pub complex: &'a ComplexResult,
     /// The mesh that moves.
     pub geometry: &'a Geometry,
+}
+
+/// Steps of a reduced model that are compared with the full one, when the case does not say.
+const COMPARED: usize = 100;
+
+impl InTime<'_> {
+    /// Whether a reduced model moves: where the case does not say, of contacts of many points.
+    pub(super) fn is_reduced(&self, wanted: &TransientAnalysis) -> bool {
+        wanted
+            .model
+            .map_or_else(|| has_many_points(&self.point.system), |model| model == ModelChoice::Reduced)
+    }
+
+    /// Steps of a reduced model that the full one makes, too; the full one of many points makes none unless it is asked to.
+    pub(super) fn compared(&self, wanted: &TransientAnalysis) -> usize {
+        let few = self.is_reduced(wanted) && !has_many_points(&self.point.system);
+        wanted.compare_steps.unwrap_or(if few { COMPARED } else { 0 })
+    }
 }

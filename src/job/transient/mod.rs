@@ -3,11 +3,12 @@
 //! [`places`] says what acts and where motion is recorded, `along` finds the complex mode to start along, `recorder`
 //! makes a row of every step, `snapshots` take the motion of all nodes now and then, `harmonic_fields` its Fourier series over the last periods, `history_writer` hands the rows on a piece at
 //! a time, so that memory does not grow with the run, and `findings`, `diagnostics` and `modal` read them back in parts: spectra and growth, data of the pictures, sound.
-//! `limits` and `deflection` say what the record cannot bear.
+//! `limits`, `deflection`, `rotation` and `depth` say what the record cannot bear.
 
 mod along;
 mod channels;
 mod deflection;
+mod depth;
 mod diagnostics;
 mod findings;
 mod harmonic_fields;
@@ -20,6 +21,7 @@ mod places;
 mod recorded_sound;
 mod recorder;
 mod reduced_check;
+mod rotation;
 mod snapshots;
 mod start;
 mod step;
@@ -29,12 +31,13 @@ pub use places::{TransientPlaces, places};
 
 use super::sink::ResultSink;
 use super::time_function::profile;
-use crate::case::{ModelChoice, SchemeChoice, TransientAnalysis};
-use crate::error::{Error, Result};
+use crate::case::{SchemeChoice, TransientAnalysis};
+use crate::equilibrium::SteadySliding;
+use crate::error::{Error, Fault, Result};
 use crate::linalg::SparseVector;
 use crate::progress::Observer;
-use crate::reduction::{Reduced, reduce};
-use crate::results::TransientResult;
+use crate::reduction::{Reduced, ReducedContacts, has_many_points, reduce};
+use crate::results::{ContactResponses, TransientResult};
 use crate::sound::SoundAccumulator;
 use crate::system::System;
 use crate::transient::{Marched, Plan, Scheme, State, StepMethod, TimeProfile, TransientModel, resume};
@@ -69,10 +72,12 @@ impl InTime<'_> {
         let start = self.start(wanted, &places)?;
         let loadings = self.loadings(wanted)?;
         let mut places = places;
+        let heaviest = heaviest(&start.state);
+        places.probe_contact(&point.system, heaviest);
         let mut disturbed = wanted.disturbance.as_ref().map(|d| self.along(d)).transpose()?;
-        let reduced = match wanted.model {
-            ModelChoice::Full => None,
-            ModelChoice::Reduced => Some(self.on_reduced(&mut places, &mut disturbed)?),
+        let reduced = match self.is_reduced(wanted) {
+            false => None,
+            true => Some(self.on_reduced(&mut places, &mut disturbed, wanted.contact_tolerance)?),
         };
         let TransientPlaces { pushes, probes, gauges, tracks, acoustics, .. } = places;
         let InitialState { state: origin, at_rest } = start;
@@ -85,11 +90,19 @@ impl InTime<'_> {
             .iter()
             .map(|pair| profile(wanted.slide.get(&pair.name).map(|s| &s.course)))
             .collect();
-        let model = TransientModel::new(system, steady)?
+        let contacts = reduced.as_ref().and_then(|reduced| reduced.contacts.as_ref());
+        let model = match contacts {
+            Some(ReducedContacts { pairs, basis, .. }) => {
+                TransientModel::reduced(system, (pairs, basis), steady)?
+            }
+            None => TransientModel::new(system, steady)?,
+        };
+        let model = model
             .driven(profiles, pushes)
             .loaded(loadings)
             .holding(self.loads(wanted))
             .travelling(tracks.iter().map(Option::as_ref).collect());
+        let model = if contacts.is_some() && !at_rest { model.balanced(steady) } else { model };
         let mut start = if at_rest { State::at_rest(&model, steady)? } else { State::steady(&model, steady) };
         if let (Some(along), Some(wanted)) = (&disturbed, &wanted.disturbance) {
             start = start.disturbed(&model, along.eigenvalue, &along.shape, wanted.amplitude / along.largest);
@@ -112,13 +125,14 @@ impl InTime<'_> {
         let mass = reduced.is_none().then_some(&*point.system.structure.mass);
         let modal = accumulator.as_ref().map(|_| ModalMotion::new(&point.real, mass));
         let along = disturbed.as_ref().map(|along| along.eigenvalue);
-        let mut recorder = Recorder::new(system, steady, &model, (probes, gauges), disturbed, modal);
+        let mut recorder =
+            Recorder::new((&point.system, heaviest), steady, &model, (probes, gauges), disturbed, modal);
         if let Some(motion) = recorder.shown.first_mut().filter(|shown| shown.measured.is_empty()) {
             motion.measured = self.complex.measured_squeal_hz.iter().map(|(hz, _)| *hz).collect();
         }
         let cycle = (HarmonicFields::new(nodes, plan.step, steps), top);
         let snapshots = wanted.fields_every.map(|_| nodes);
-        let deflections = Deflections::new(&point.prepared.model, nodes, steps);
+        let deflections = Deflections::new(point.prepared, nodes, steps);
         let mut history_writer = HistoryWriter::new(recorder, snapshots, (cycle, deflections), sink);
         let mut marched = history_writer.begin(start, &model, &plan)?;
         march_on(&mut history_writer, (&model, &plan), &mut marched, observer)?;
@@ -141,7 +155,7 @@ impl InTime<'_> {
             sound.name_tones(found.spectra.iter().flat_map(|of| &of.peaks));
         }
         let first = |name: &str, count: usize| history_writer.sink.recorded(name, 0..count);
-        let own = (&*point.steady, self.complex);
+        let own = (&*point.system, &*point.steady, self.complex);
         let check = |reduced| reduced_check(reduced, own, beside.as_ref(), &first, observer);
         let reduced_check = reduced.as_ref().map(check).transpose()?;
         let HistoryWriter { recorder, cycle, deflections, .. } = history_writer;
@@ -155,6 +169,11 @@ impl InTime<'_> {
             set_valued: set_valued(&point.system),
             reduced: reduced.as_ref().map(|r| [r.modes, r.basis.ncols() - r.modes]),
             reduced_check,
+            contact_responses: contacts.map(|contacts| ContactResponses {
+                tolerance: wanted.contact_tolerance,
+                error: contacts.error.largest,
+                probes: contacts.error.probes,
+            }),
             shown: recorder.shown.into_iter().map(|shown| shown.channel).collect(),
             spent: recorder.spent.map(share),
             events: recorder.happened,
@@ -174,13 +193,20 @@ impl InTime<'_> {
     }
 
     /// The reduced model, on which all places and the disturbed mode stand from then on.
-    fn on_reduced(&self, places: &mut TransientPlaces, disturbed: &mut Option<Along>) -> Result<Reduced> {
+    fn on_reduced(
+        &self,
+        places: &mut TransientPlaces,
+        disturbed: &mut Option<Along>,
+        tolerance: f64,
+    ) -> Result<Reduced> {
+        let tolerance = has_many_points(&self.point.system).then_some(tolerance);
+        self.refuse_many_that_travel(places)?;
         let TransientPlaces { pushes, probes, gauges, tracks, .. } = places;
         let stations = tracks.iter().flatten().flat_map(|track| track.stations.iter().flatten());
         let stations = stations.flat_map(|point| [&point.normal, &point.tangents[0], &point.tangents[1]]);
         let pushed = pushes.iter().map(|push| &push.direction);
         let forces: Vec<SparseVector> = pushed.chain(stations).cloned().collect();
-        let reduced = reduce(&self.point.system, &self.point.steady, &self.point.real, &forces)?;
+        let reduced = reduce(&self.point.system, &self.point.steady, &self.point.real, &forces, tolerance)?;
         pushes.iter_mut().for_each(|push| push.direction = reduced.form(&push.direction));
         probes.iter_mut().for_each(|probe| probe.direction = reduced.form(&probe.direction));
         for gauge in gauges {
@@ -192,6 +218,34 @@ impl InTime<'_> {
         *disturbed = disturbed.take().map(|along| along.reduced(&reduced));
         Ok(reduced)
     }
+
+    /// A reduced model has the deflections under a contact of many points where that stands.
+    fn refuse_many_that_travel(&self, places: &TransientPlaces) -> Result<()> {
+        let pairs = self.point.system.pairs.iter().zip(&places.tracks);
+        let travelling = pairs.filter(|(_, track)| track.is_some()).map(|(pair, _)| &pair.name);
+        match travelling.take(1).find(|_| has_many_points(&self.point.system)) {
+            None => Ok(()),
+            Some(name) => {
+                let found = format!(
+                    "a contact that travels, with {} points in all",
+                    self.point.system.points().count()
+                );
+                let expected = "contacts that stay, or up to 500 points";
+                let help =
+                    "Set `travels = false`, or `transient.model = \"full\"` where memory and time allow it";
+                Err(Error::input(
+                    Fault::new(format!("transient.slide.{name}"), found, expected).with_help(help),
+                ))
+            }
+        }
+    }
+}
+
+/// The contact point that carries most.
+fn heaviest(steady: &SteadySliding) -> usize {
+    let points = &steady.points;
+    let heavier = |a: &usize, b: &usize| points[*a].forces.normal.total_cmp(&points[*b].forces.normal);
+    (0..points.len()).max_by(heavier).unwrap_or(0)
 }
 
 /// Marches to the end; what was recorded is written, whatever comes.

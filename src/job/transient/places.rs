@@ -15,7 +15,7 @@ use crate::job::travel::tracks;
 use crate::linalg::SparseVector;
 use crate::results::RecordSize;
 use crate::sound::Acoustics;
-use crate::system::ContactPair;
+use crate::system::{ContactPair, System};
 use crate::transient::{self, Pulse, Push, Track};
 
 /// Loads on the structure in time, and the places where its motion is recorded.
@@ -35,6 +35,15 @@ pub struct TransientPlaces {
 }
 
 impl TransientPlaces {
+    /// Without a probe, records the motion of the contact point `point`.
+    pub(super) fn probe_contact(&mut self, system: &System, point: usize) {
+        if let Some((_, touching)) = system.points().nth(point).filter(|_| self.probes.is_empty()) {
+            let direction = touching.tangents[0].clone();
+            let place = "the point that carries most".into();
+            self.probes.push(ProbePlace { name: "contact".into(), place, direction, measured: Vec::new() });
+        }
+    }
+
     /// Smallest record of a run to a folder, without sound and without the rows of an earlier run.
     pub(in crate::job) fn least_record(
         &self,

@@ -49,25 +49,16 @@ pub(super) struct Recorder<'a> {
 }
 
 impl<'a> Recorder<'a> {
-    /// A recorder of a run of `model` from its steady state; without a probe it records the point that carries most.
+    /// A recorder of a run of `model` from its steady state, whose contact point `point` carries most.
     pub(super) fn new(
-        system: &System,
+        (system, point): (&System, usize),
         steady: &'a SteadySliding,
         model: &'a TransientModel<'a>,
-        (mut probes, gauges): (Vec<ProbePlace>, Vec<Gauge>),
+        (probes, gauges): (Vec<ProbePlace>, Vec<Gauge>),
         along: Option<Along>,
         modal: Option<ModalMotion>,
     ) -> Self {
         let points = &steady.points;
-        let heaviest = |a: &usize, b: &usize| points[*a].forces.normal.total_cmp(&points[*b].forces.normal);
-        let point = (0..points.len()).max_by(heaviest).unwrap_or(0);
-        if probes.is_empty()
-            && let Some((_, place)) = system.points().nth(point)
-        {
-            let direction = place.tangents[0].clone();
-            let place = "the point that carries most".into();
-            probes.push(ProbePlace { name: "contact".into(), place, direction, measured: Vec::new() });
-        }
         let mut channels = Channels::new(system, steady, (&probes, gauges), point, along.is_some());
         let mut first = 0;
         let pairs = system.pairs.iter().map(|pair| {

@@ -3,15 +3,17 @@
 use super::in_time::InTime;
 use super::places::TransientPlaces;
 use crate::case::{ModelChoice, TransientAnalysis};
-use crate::equilibrium::SteadySliding;
+use crate::equilibrium::{ContactBlock, SteadySliding, directions, linearize};
 use crate::error::Result;
 use crate::job::sink::{Histories, Memory, ResultStage};
-use crate::linalg::c64;
+use crate::linalg::multivector::gram;
+use crate::linalg::{SparseVector, c64};
 use crate::modal::{RealModes, SturmCertificate};
 use crate::progress::Observer;
 use crate::reduction::Reduced;
 use crate::results::{ComplexResult, Deviation, MotionCompared, ReducedCheck};
 use crate::stability::{ComplexModes, complex_modes};
+use crate::system::{Coupling, System};
 use faer::Mat;
 use std::f64::consts::TAU;
 
@@ -29,9 +31,12 @@ pub(super) fn first_steps(
     places: &TransientPlaces,
     observer: &dyn Observer,
 ) -> Result<Option<Histories>> {
-    let Some(steps) = wanted.compare_steps.filter(|steps| *steps > 0) else { return Ok(None) };
+    let steps = run.compared(wanted);
+    if steps == 0 {
+        return Ok(None);
+    }
     let full = TransientAnalysis {
-        model: ModelChoice::Full,
+        model: Some(ModelChoice::Full),
         compare_steps: None,
         fields_every: None,
         duration: wanted.duration.min(steps as f64 * wanted.time_step),
@@ -49,17 +54,21 @@ pub(super) fn first_steps(
 /// reduced run.
 pub(super) fn reduced_check(
     reduced: &Reduced,
-    (steady, complex): (&SteadySliding, &ComplexResult),
+    (full_system, steady, complex): (&System, &SteadySliding, &ComplexResult),
     full: Option<&Histories>,
     few: &dyn Fn(&str, usize) -> Result<Vec<f64>>,
     observer: &dyn Observer,
 ) -> Result<ReducedCheck> {
-    let own = reduced.steady(steady);
+    let linear = linearised(reduced, full_system, steady);
+    let (system, own) = match &linear {
+        Some((system, own)) => (system, own.clone()),
+        None => (&reduced.system, reduced.steady(steady)),
+    };
     let modes = &complex.modes;
     let [low, high] = complex.band_hz;
     // A mode at the edge may come to lie beyond it.
     let band = [0.9 * low, 1.1 * high];
-    let own = complex_modes(&reduced.system, &own, &own_modes(reduced), band, observer)?;
+    let own = complex_modes(system, &own, &own_modes(reduced), band, observer)?;
     let partners = partners(modes, &own);
     let of = |k: usize| modes.modes[k].eigenvalue;
     let shift =
@@ -78,6 +87,43 @@ pub(super) fn reduced_check(
         growth: growths.or_else(|| nearest.and_then(growth)),
         motion: full.map(|full| motion(steady, full, few)).transpose()?,
     })
+}
+
+/// A reduced model whose contacts are apart from it, with K_c and C_c of these between its coordinates in their place.
+fn linearised(reduced: &Reduced, full: &System, steady: &SteadySliding) -> Option<(System, SteadySliding)> {
+    let contacts = reduced.contacts.as_ref()?;
+    let n = reduced.basis.ncols();
+    let points: Vec<_> = contacts.pairs.iter().flat_map(|pair| &*pair.points).collect();
+    let blocks = linearize(full, steady).blocks;
+    let seen = Mat::from_fn(3 * blocks.len(), n, |i, j| {
+        directions(points[blocks[i / 3].point])[i % 3].dot(contacts.basis.col_as_slice(j))
+    });
+    let between = |part: &dyn Fn(&ContactBlock) -> [[f64; 3]; 3]| {
+        let forces = Mat::from_fn(seen.nrows(), n, |i, j| {
+            let row = part(&blocks[i / 3])[i % 3];
+            (0..3).map(|c| row[c] * seen[(i - i % 3 + c, j)]).sum::<f64>()
+        });
+        gram(seen.as_ref(), forces.as_ref())
+    };
+    let mut stiffness = between(&|block| block.stiffness);
+    let mut damping = between(&|block| block.damping);
+    if let Some(rest) = &reduced.system.coupling {
+        for (i, row) in rest.directions.iter().enumerate() {
+            for (j, column) in rest.directions.iter().enumerate() {
+                for ((a, x), (b, y)) in row.iter().flat_map(|x| column.iter().map(move |y| (x, y))) {
+                    stiffness[(a, b)] += x * rest.stiffness[(i, j)] * y;
+                    damping[(a, b)] += x * rest.damping[(i, j)] * y;
+                }
+            }
+        }
+    }
+    let directions = (0..n).map(|k| SparseVector::from_entries([(k, 1.0)])).collect();
+    let system = System {
+        coupling: Some(Coupling { directions, stiffness, damping, skew: None }),
+        ..reduced.system.clone()
+    };
+    let own = SteadySliding { approach: Vec::new(), points: Vec::new(), ..reduced.steady(steady) };
+    Some((system, own))
 }
 
 fn larger(a: &Deviation, b: &Deviation) -> std::cmp::Ordering {
@@ -178,6 +224,7 @@ mod tests {
             real_modes: vec![],
             discs: vec![],
             shares: None,
+            without_split: vec![],
             measured_squeal_hz: vec![],
             band_hz: [0.0, top],
             certificate: None,
@@ -185,8 +232,8 @@ mod tests {
             modes,
         };
         let few = dense_modes(&system, kept);
-        let reduced = reduce(&system, &steady, &few, &[]).unwrap();
-        reduced_check(&reduced, (&steady, &complex), None, &|_, _| Ok(vec![]), &()).unwrap()
+        let reduced = reduce(&system, &steady, &few, &[], None).unwrap();
+        reduced_check(&reduced, (&system, &steady, &complex), None, &|_, _| Ok(vec![]), &()).unwrap()
     }
 
     #[test]

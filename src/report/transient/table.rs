@@ -2,7 +2,7 @@
 
 use crate::report::format::{fixed, given, hertz, power, prefixed, signed, significant};
 use crate::report::table::ReportTable;
-use crate::results::{GrowthCompared, TransientResult};
+use crate::results::{ContactResponses, GrowthCompared, TransientResult};
 use crate::signal::LimitCycle;
 use std::f64::consts::TAU;
 
@@ -49,6 +49,7 @@ pub(in crate::report) fn table(run: &TransientResult) -> ReportTable {
             "Reduced model: {modes} real modes and {attached} shapes for the static response to contacts and forces."
         )
     }));
+    table.notes.extend(run.contact_responses.as_ref().map(responses));
     table.notes.extend(run.growth.as_ref().map(disturbance));
     table.notes.extend(run.diagnostics.cycles.iter().map(|(channel, cycle)| swing(run, *channel, cycle)));
     table.notes.extend(contact(run));
@@ -135,6 +136,18 @@ fn contact(run: &TransientResult) -> Vec<String> {
         ));
     }
     notes
+}
+
+/// How near the deflections of a reduced model are.
+fn responses(of: &ContactResponses) -> String {
+    let wide = if of.error > of.tolerance { ", more than `transient.contact_tolerance`" } else { "" };
+    format!(
+        "Deflections under the forces of the contacts, beside those of all degrees of freedom: a relative error of {}{wide}, estimated by {} random \
+         motions; {:.0} % of all such motions have no larger one, with a probability of 95 %.",
+        power(of.error),
+        of.probes,
+        100.0 * of.share()
+    )
 }
 
 /// Where the energy went.

@@ -198,7 +198,8 @@ fn skew_parts_move_a_body_however_they_are_given() {
         other.coupling = Some(low_rank);
         sparse.coupling = Some(whole);
         let steady = solve_steady(&sparse, &SteadyOptions::default(), &()).unwrap();
-        let reduced = crate::reduction::reduce(&beside, &steady, &dense_modes(&beside, 30), &[]).unwrap();
+        let reduced =
+            crate::reduction::reduce(&beside, &steady, &dense_modes(&beside, 30), &[], None).unwrap();
         let small = reduced.steady(&steady);
         let plan = plan(Scheme::hht(-0.05), 1e-3, 600);
         let go = |system: &System, steady: &SteadySliding, push: Push| {
