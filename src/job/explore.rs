@@ -4,7 +4,7 @@ use super::known::KnownAnswers;
 use super::operating_point::OperatingPoint;
 use super::sink::ResultStage;
 use super::states::{OnFamily, RATIO, Start, States, Whole, keeps_the_structure};
-use super::studies::{Study, between};
+use super::studies::Study;
 use crate::case::{Case, MapAnalysis, SweepAnalysis};
 use crate::error::{Error, Result};
 use crate::linalg::c64;
@@ -157,7 +157,14 @@ impl Explorer<'_> {
     /// The problem of a study.
     pub(super) fn problem(&self, study: &Study) -> Result<Problem<'_>> {
         if self.keeps_the_structure(&study.paths)? {
-            return Ok(Problem::Reduced(self.family(&study.paths, &study.training())?));
+            let mut on = self.family(&study.paths, &study.training())?;
+            // Before the points, which would have to be solved once more.
+            for at in study.inside() {
+                if on.check(&at).is_ok_and(|checks| worst_alone(&checks) > ACCURACY) {
+                    on.train(&at)?;
+                }
+            }
+            return Ok(Problem::Reduced(on));
         }
         Ok(Problem::Whole(Whole::new(
             self.start.nominal.prepared,
@@ -268,8 +275,7 @@ impl Explorer<'_> {
         let study = Study::of_map(name, analysis);
         let mut result = self.empty_map(name, analysis, &study)?;
         let axes = result.axes;
-        let inside =
-            [[0.3, 0.7], [0.75, 0.2]].map(|shares| between(study.axes(), &shares)).map(|at| [at[0], at[1]]);
+        let inside: Vec<[f64; 2]> = study.inside().iter().map(|at| [at[0], at[1]]).collect();
         let (failure, method) = self.refined(&study, |answered, problem, trained| {
             let trained: Vec<[f64; 2]> = trained.iter().map(|at| [at[0], at[1]]).collect();
             result.points.clear();

@@ -126,10 +126,16 @@ impl Study {
             Points::Samples { training, .. } => training.clone(),
         }
     }
+
+    /// Places inside a map, at which its reduced model is measured on the full order.
+    pub(super) fn inside(&self) -> Vec<Vec<f64>> {
+        let shares: &[[f64; 2]] = if self.axes().len() == 2 { &[[0.3, 0.7], [0.75, 0.2]] } else { &[] };
+        shares.iter().map(|shares| between(self.axes(), shares)).collect()
+    }
 }
 
 /// The place at these shares of the way along axes.
-pub(super) fn between(axes: &[Axis], shares: &[f64]) -> Vec<f64> {
+fn between(axes: &[Axis], shares: &[f64]) -> Vec<f64> {
     axes.iter().zip(shares).map(|(axis, share)| axis.between(axis.from, axis.to, *share)).collect()
 }
 

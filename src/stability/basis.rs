@@ -269,6 +269,22 @@ impl<'a> Basis<'a> {
         new.subcols(0, done).to_owned()
     }
 
+    /// Puts E/τ-orthonormal combinations Z `mix` of the vectors added to the real modes in their place.
+    pub(super) fn combine_added(&mut self, mix: MatRef<'_, f64>) {
+        self.added = expand(self.added.as_ref(), mix);
+        let n_real = self.n_real();
+        let whole = beside_modes(n_real, mix);
+        let form = |a: &Mat<f64>| product(whole.transpose(), product(a.as_ref(), whole.as_ref()).as_ref());
+        self.mass = form(&self.mass);
+        self.damping = form(&self.damping);
+        self.stiffness = form(&self.stiffness);
+        self.hysteretic = self.hysteretic.as_ref().map(form);
+        self.skew = self.skew.as_ref().map(|parts| parts.each_ref().map(form));
+        self.interface = product(whole.transpose(), self.interface.as_ref());
+        self.sizes =
+            (0..whole.ncols()).map(|j| self.stiffness[(j, j)] + self.tau * self.mass[(j, j)]).collect();
+    }
+
     /// Adds vectors and their projections.
     fn append(&mut self, new: MatRef<'_, f64>) {
         append(&mut self.added, new);
@@ -324,6 +340,14 @@ impl<'a> Basis<'a> {
         });
         self.sizes.extend((old..m).map(|j| self.stiffness[(j, j)] + self.tau * self.mass[(j, j)]));
     }
+}
+
+/// \[1 0; 0 `mix`\], which leaves the first `count` vectors as they are.
+fn beside_modes(count: usize, mix: MatRef<'_, f64>) -> Mat<f64> {
+    let mut whole = Mat::zeros(count + mix.nrows(), count + mix.ncols());
+    (0..count).for_each(|i| whole[(i, i)] = 1.0);
+    whole.submatrix_mut(count, count, mix.nrows(), mix.ncols()).copy_from(mix);
+    whole
 }
 
 /// Some columns of a matrix.

@@ -198,7 +198,7 @@ impl<'f> Family<'f> {
         Ok(FamilyModes { eigenvalues: modes.eigenvalues, vectors: modes.right })
     }
 
-    /// λ of the modes of `state` alone, in no order, at a third of the cost.
+    /// λ of the modes of `state` alone, in no order, at a third of the cost or less.
     ///
     /// # Errors
     /// As [`Family::modes`].
@@ -246,7 +246,8 @@ impl<'f> Family<'f> {
         let measure = |of: &Self| -> Result<_> {
             let spectrum = of.reduced.spectrum(&of.frame.terms(state), &state.damping_weights)?;
             let measured = of.measure(&of.reduced, state, &spectrum.modes(|z| in_band(z, band)));
-            let near = (of.basis.len() > LARGE).then(|| spectrum.modes(|z| near_band(z, band)));
+            let near = (of.basis.len() > LARGE || !of.snapshots.is_empty())
+                .then(|| spectrum.modes(|z| near_band(z, band)));
             Ok((measured, near))
         };
         let ((mut check, mut wanted), mut near) = measure(self)?;
@@ -258,8 +259,7 @@ impl<'f> Family<'f> {
             if self.basis.enrich(&corrections, FIRST_TOLERANCE * 0.01f64.powi(k), usize::MAX) == 0 {
                 break;
             }
-            self.projection = project(self.frame, &self.basis);
-            self.reduced = FamilyMatrices::new(&self.projection, &self.springs, self.frame.floor())?;
+            self.project()?;
             ((check, wanted), near) = measure(self)?;
         }
         if let Some(near) = near {
@@ -268,17 +268,37 @@ impl<'f> Family<'f> {
         Ok(check)
     }
 
-    /// Adds the modes of a state, on which the basis is trained, to the snapshots.
-    fn make_compact(&mut self, modes: &ReducedModes) -> Result<()> {
-        let (frame, band) = (self.frame, self.frame.band);
-        self.snapshots.add(self.reduced.rotation.as_ref(), modes);
-        let fewer = self.snapshots.compact(&self.projection, band[1].powi(2));
+    /// Adds the modes of a state, on which the basis is trained, to the snapshots, and makes the reduced model of all of them.
+    ///
+    /// Of many directions of contact each state brings its own corrections: then the basis, too, keeps only what the snapshots have of
+    /// them, so that the dense problem of the next state is as small as that of the first.
+    fn make_compact(&mut self, near: &ReducedModes) -> Result<()> {
+        let (frame, tau) = (self.frame, self.frame.band[1].powi(2));
+        self.snapshots.add(self.reduced.rotation.as_ref(), near);
+        let (n_real, before) = (self.basis.n_real(), self.basis.len());
+        let combinations = match frame.springs.is_empty() {
+            true => None,
+            false => self.snapshots.reduce(&self.projection, tau, n_real),
+        };
+        if let Some(mix) = combinations {
+            self.basis.combine_added(mix.as_ref());
+            self.project()?;
+        }
+        let most = if self.basis.len() < before { self.basis.len() - 1 } else { before / 2 };
+        let fewer = self.snapshots.compact(&self.projection, tau, most);
         let matrices = |(projection, basis): (Projection, Mat<f64>)| {
             let mut matrices = FamilyMatrices::new(&projection, &self.springs, frame.floor())?;
             matrices.rotation = product(basis.as_ref(), matrices.rotation.as_ref());
             Ok(matrices)
         };
         self.compact = fewer.map(matrices).transpose()?;
+        Ok(())
+    }
+
+    /// The reduced model on the whole basis.
+    fn project(&mut self) -> Result<()> {
+        self.projection = project(self.frame, &self.basis);
+        self.reduced = FamilyMatrices::new(&self.projection, &self.springs, self.frame.floor())?;
         Ok(())
     }
 

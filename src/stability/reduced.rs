@@ -4,7 +4,7 @@ use crate::dynamics::InterfaceTerm;
 use crate::error::Result;
 use crate::linalg::c64;
 use crate::linalg::dense::{definite_pencil, product};
-use crate::linalg::unsymmetric::{Eigenvalues, complex_spectrum, eigenvalues, spectrum};
+use crate::linalg::unsymmetric::{Eigenvalues, complex_eigenvalues, complex_spectrum, eigenvalues, spectrum};
 use faer::{Mat, MatRef};
 
 /// (λ² + λ (Σ wᵢCᵢ + G + B c Bᵀ) + K + N + i Σ wᵢHᵢ + B k Bᵀ) y = 0 in M-orthonormal coordinates, m of them; G and N are skew.
@@ -33,6 +33,11 @@ pub(super) struct Projection {
 }
 
 impl Projection {
+    /// K + τ M.
+    pub(super) fn energy(&self, tau: f64) -> Mat<f64> {
+        &self.stiffness + faer::Scale(tau) * &self.mass
+    }
+
     /// The projection on the columns of `basis`.
     pub(super) fn onto(&self, basis: MatRef<'_, f64>) -> Projection {
         let form = |a: &Mat<f64>| product(basis.transpose(), product(a.as_ref(), basis).as_ref());
@@ -107,23 +112,18 @@ impl FamilyMatrices {
     /// the frequencies, not of their squares: the error of the QR algorithm is then about 1e-15 d_max. The lower
     /// half of its left vector is that of Q.
     pub(super) fn spectrum(&self, terms: &[InterfaceTerm], weights: &[f64]) -> Result<ReducedSpectrum<'_>> {
-        let (m, d) = (self.frequencies.len(), &self.frequencies);
         let (c, k) = self.matrices(terms, weights);
         let h = self.losses(weights);
         let companion = self.companion(&c, &k);
         let all = match &h {
             None => spectrum(companion.as_ref())?,
-            Some(h) => {
-                let lossy = |i: usize, j: usize| if i >= m && j < m { -h[(i - m, j)] / d[j] } else { 0.0 };
-                let entry = |i: usize, j: usize| c64::new(companion[(i, j)], lossy(i, j));
-                complex_spectrum(Mat::from_fn(2 * m, 2 * m, entry).as_ref())?
-            }
+            Some(h) => complex_spectrum(self.lossy(&companion, h).as_ref())?,
         };
         Ok(ReducedSpectrum { of: self, damping: c, stiffness: k, losses: h, all })
     }
 
     /// The eigenvalues that are `wanted`, in no order and without the correction of [`FamilyMatrices::solve`], at a third of its
-    /// cost.
+    /// cost or less.
     /// Fails where numbers are not finite.
     pub(super) fn eigenvalues(
         &self,
@@ -131,11 +131,12 @@ impl FamilyMatrices {
         weights: &[f64],
         wanted: impl Fn(c64) -> bool,
     ) -> Result<Vec<c64>> {
-        if self.losses(weights).is_some() {
-            return Ok(self.solve(terms, weights, wanted)?.eigenvalues);
-        }
         let (c, k) = self.matrices(terms, weights);
-        let all = eigenvalues(self.companion(&c, &k).as_ref())?;
+        let companion = self.companion(&c, &k);
+        let all = match self.losses(weights) {
+            None => eigenvalues(companion.as_ref())?,
+            Some(h) => complex_eigenvalues(self.lossy(&companion, &h).as_ref())?,
+        };
         Ok(all.into_iter().filter(|z| wanted(*z)).collect())
     }
 
@@ -173,6 +174,13 @@ impl FamilyMatrices {
             (false, true) => -k[(i - m, j)] / d[j],
             (false, false) => -c[(i - m, j - m)],
         })
+    }
+
+    /// \[0 D; −(K + iH) D⁻¹ −C\].
+    fn lossy(&self, companion: &Mat<f64>, h: &Mat<f64>) -> Mat<c64> {
+        let (m, d) = (self.frequencies.len(), &self.frequencies);
+        let loss = |i: usize, j: usize| if i >= m && j < m { -h[(i - m, j)] / d[j] } else { 0.0 };
+        Mat::from_fn(2 * m, 2 * m, |i, j| c64::new(companion[(i, j)], loss(i, j)))
     }
 
     /// Σ b_row value b_columnᵀ over the terms.

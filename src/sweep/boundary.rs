@@ -96,7 +96,13 @@ impl Grid<'_> {
         let place = |x: f64| if rising { [self.axes[0].value(i), x] } else { [x, self.axes[1].value(j)] };
         let k = if rising { j } else { i };
         let (a, b) = (axis.value(k), axis.value(k + 1));
-        let (fa, fb) = (self.growth(&place(a))?, self.growth(&place(b))?);
+        let known = |k: usize| {
+            let at = if rising { i + self.axes[0].points * k } else { k + self.axes[0].points * j };
+            let MapPoint { growth_rate, unstable, .. } = self.map[at];
+            // Of a stable point what is above zero is rounding.
+            if unstable > 0 { growth_rate } else { growth_rate.min(0.0) }
+        };
+        let (fa, fb) = (known(k), known(k + 1));
         let bracket = if fa > 0.0 {
             Bracket { below: (b, fb), above: (a, fa) }
         } else {

@@ -67,6 +67,14 @@ pub fn eigenvalues(a: MatRef<'_, f64>) -> Result<Vec<c64>> {
     real(a, Vectors::None).map(|found| found.values)
 }
 
+/// The eigenvalues of a complex matrix alone, at a sixth of the cost of [`complex_spectrum`].
+///
+/// # Errors
+/// As [`spectrum`].
+pub fn complex_eigenvalues(a: MatRef<'_, c64>) -> Result<Vec<c64>> {
+    complex(a, Vectors::None).map(|found| found.values)
+}
+
 /// Vectors that are computed besides the eigenvalues.
 #[derive(Clone, Copy, PartialEq)]
 enum Vectors {
