@@ -108,7 +108,7 @@ fn deck() -> String {
         *Material, name=Iron\n*Density\n7.2e-09,\n*Elastic\n120000., 0.26\n\
         *Material, name=Lining\n*Density\n2.5e-09,\n*Elastic\n8000., 0.25\n\
         *Material, name=Steel\n*Density\n7.85e-09,\n*Elastic\n210000., 0.3\n\
-        *Surface Interaction, name=Rub\n*Friction\n0.5,\n*Surface Behavior, pressure-overclosure=LINEAR\n1000.,\n\
+        *Surface Interaction, name=Rub\n*Friction\n0.2,\n*Surface Behavior, pressure-overclosure=LINEAR\n1000.,\n\
         *Contact Pair, interaction=Rub, type=SURFACE TO SURFACE\nPad_face, Disc_top\n\
         *Boundary\nBottom, ENCASTRE\nGuided, 1, 2\n\
         *Step, name=Press, nlgeom=YES\n*Static\n1., 1.\n*Dsload\nPiston, P, 0.8\n*End Step\n\
@@ -124,7 +124,7 @@ fn native() -> (Mesh, &'static str) {
         let [u, v] = [x + at[0] - 30.0, y + at[1] - 30.0];
         [u * cos - v * sin + 30.0, u * sin + v * cos + 30.0, z + at[2]]
     };
-    let mut region = |mesh: &mut Mesh, name: &str, dimension, cells: Vec<Cell>| {
+    let region = |mesh: &mut Mesh, name: &str, dimension, cells: Vec<Cell>| {
         let first = mesh.elements.len();
         mesh.elements.extend(cells);
         let elements = (first..mesh.elements.len()).collect();
@@ -168,7 +168,7 @@ counter = "disc_high"
 approach = 0
 rotation = { axis = [0, 0, 1], point = ["-30 mm", "30 mm", 0], speed = "31.4 rad/s" }
 normal = { per = "area", stiffness = "1000 GN/m^3" }
-friction = { law = "coulomb", mu0 = 0.5 }
+friction = { law = "coulomb", mu0 = 0.2 }
 "#;
     (mesh, case)
 }

@@ -539,8 +539,8 @@ fn a_wrong_deck_is_refused_with_all_its_faults_and_nothing_is_written() {
     let deck =
         chapter.split("```inp,file=rub.inp\n").nth(1).and_then(|rest| rest.split("```").next()).unwrap();
     let folder = tempfile::tempdir().unwrap();
-    let import = |text: &str, more: &[&str]| {
-        std::fs::write(folder.path().join("rub.inp"), text).unwrap();
+    let import = |deck: &str, more: &[&str]| {
+        std::fs::write(folder.path().join("rub.inp"), deck).unwrap();
         let output = stridor(folder.path(), &[&["import", "rub.inp", "--out", "rub"], more].concat());
         (
             output.status.code(),

@@ -3,6 +3,8 @@
 //! Numbers are in the units of the file, which no file states; places are Cartesian. Nodes and elements are known by their index.
 
 use crate::ledger::Ledger;
+pub use crate::place::Place;
+use crate::place::place_words;
 use std::path::PathBuf;
 use stridor_mesh::CellKind;
 
@@ -51,15 +53,6 @@ pub struct Deck {
     pub analyses: Vec<Analysis>,
     /// What was read in part or not at all.
     pub ledger: Ledger,
-}
-
-/// A line of a file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Hash)]
-pub struct Place {
-    /// Index in [`Deck::files`].
-    pub file: u32,
-    /// Counted from 1.
-    pub line: u32,
 }
 
 /// A node.
@@ -442,10 +435,4 @@ impl Deck {
     pub fn surface(&self, name: &str) -> Option<&Surface> {
         self.surfaces.iter().find(|surface| surface.name.eq_ignore_ascii_case(name))
     }
-}
-
-/// `file.inp:12`; the file alone where there is no line.
-pub(crate) fn place_words(files: &[PathBuf], place: Place) -> String {
-    let file = files.get(place.file as usize).map(|file| file.display().to_string()).unwrap_or_default();
-    if place.line == 0 { file } else { format!("{file}:{}", place.line) }
 }

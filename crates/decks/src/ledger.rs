@@ -1,6 +1,6 @@
 //! What of a file was read in part, or not at all.
 
-use crate::deck::Place;
+use crate::place::Place;
 use std::collections::BTreeMap;
 
 /// What was not read, each kind once with its first place and how often it stands there.

@@ -14,6 +14,7 @@ mod deck;
 mod format;
 mod ledger;
 mod nastran;
+mod place;
 mod text;
 mod universal;
 

@@ -1,6 +1,6 @@
 //! Files as lines with their places: text of any encoding, files that a line includes, faults.
 
-use crate::deck::{Place, place_words};
+use crate::place::{Place, place_words};
 use std::path::{Path, PathBuf};
 use stridor_base::error::read::{not_text, plain, read_bytes};
 use stridor_base::error::{Error, Fault, Faults, Result};

@@ -1,7 +1,7 @@
 //! Which command is read by whom, and what commands that are not read mean.
 
+use super::model::Selection;
 use super::reader::{Command, Reader};
-use super::selection::Selection;
 use crate::deck::Analysis;
 use crate::ledger::Weight;
 

@@ -1,9 +1,8 @@
 //! An archive as it stands: numbers of the file, before elements and sets are made of them.
 
-use super::selection::Selection;
 use crate::deck::{Analysis, Motion, Place};
 use crate::ledger::Ledger;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Terms of an equation: node, degree of freedom, factor.
 pub(super) type Terms = Vec<(u64, u8, f64)>;
@@ -207,14 +206,36 @@ pub(super) fn turned([xy, yz, zx]: [f64; 3]) -> [[f64; 3]; 3] {
     ]
 }
 
+/// Nodes or elements that commands of `ALL` act on.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) enum Selection {
+    /// All of them.
+    #[default]
+    All,
+    /// Those of these numbers.
+    Some(BTreeSet<u64>),
+    /// By a rule that is not read.
+    Unknown,
+}
+
+impl Selection {
+    /// Adds one that was just defined: it is selected.
+    pub fn add(&mut self, number: u64) {
+        if let Selection::Some(members) = self {
+            members.insert(number);
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use stridor_base::bounds::{Origin::*, within};
 
     /// One angle alone turns as its name says: the first axis toward the second.
     #[test]
     fn angles_turn_from_the_first_axis_to_the_second() {
-        let near = |a: [f64; 3], b: [f64; 3]| (0..3).all(|k| (a[k] - b[k]).abs() < 1e-15);
+        let near = |a: [f64; 3], b: [f64; 3]| (0..3).all(|k| within((a[k] - b[k]).abs(), 1e-15, RoundOff));
         let [x, y, _] = turned([90.0, 0.0, 0.0]);
         assert!(near(x, [0.0, 1.0, 0.0]) && near(y, [-1.0, 0.0, 0.0]));
         let [_, y, z] = turned([0.0, 90.0, 0.0]);

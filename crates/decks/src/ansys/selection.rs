@@ -1,31 +1,10 @@
 //! Which nodes and elements are selected: NSEL, ESEL, CMSEL, NSLE, ESLN, ALLSEL.
 
-use super::model::{Attributes, Component, Model};
+use super::model::{Attributes, Component, Model, Selection};
 use super::reader::{Command, Reader};
 use crate::deck::Place;
 use crate::ledger::Weight;
 use std::collections::BTreeSet;
-
-/// Nodes or elements that commands of `ALL` act on.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub(super) enum Selection {
-    /// All of them.
-    #[default]
-    All,
-    /// Those of these numbers.
-    Some(BTreeSet<u64>),
-    /// By a rule that is not read.
-    Unknown,
-}
-
-impl Selection {
-    /// Adds one that was just defined: it is selected.
-    pub fn add(&mut self, number: u64) {
-        if let Selection::Some(members) = self {
-            members.insert(number);
-        }
-    }
-}
 
 impl Component {
     /// Those of the numbers that are members.

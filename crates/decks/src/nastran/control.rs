@@ -1,6 +1,6 @@
 //! Executive and case control: what is solved, and which sets of supports, loads and methods it takes.
 
-use super::Notes;
+use super::notes::Notes;
 use crate::deck::Place;
 use crate::ledger::Weight;
 use std::collections::BTreeMap;

@@ -1,7 +1,7 @@
 //! Fields of a card as numbers and words. Every field that is not blank and was not asked for is noted.
 
-use super::Notes;
 use super::card::Card;
+use super::notes::Notes;
 use crate::deck::Place;
 use crate::ledger::Weight;
 use stridor_base::numbers;

@@ -3,9 +3,9 @@
 //! A is the origin, B is on the third axis, C in the plane of the first and the third. Coordinates are x, y, z; r, θ, z; or r, θ from the
 //! third axis, φ about it; angles in degrees.
 
-use super::Notes;
 use super::fields::Fields;
 use super::grids::Grids;
+use super::notes::Notes;
 use super::table::Table;
 use crate::deck::Frame;
 use stridor_mesh::quality::{cross, dot, minus};

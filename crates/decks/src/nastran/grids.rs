@@ -1,9 +1,9 @@
 //! Grid points: GRID, GRDSET; scalar points, which have no place, are noted.
 
-use super::Notes;
 use super::fields::Fields;
 use super::frames::{Axes, BASIC, Frames};
 use super::list::{self, Ids};
+use super::notes::Notes;
 use super::table::Table;
 use crate::deck::{Node, Place};
 use crate::ledger::Weight;

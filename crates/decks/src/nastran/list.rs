@@ -1,7 +1,7 @@
 //! Lists of numbers: `1, 2, 5, THRU, 20, BY, 3, EXCEPT, 8`.
 
-use super::Notes;
 use super::fields::{Fields, integer};
+use super::notes::Notes;
 use super::table::Table;
 use crate::deck::Place;
 

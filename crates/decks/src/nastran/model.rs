@@ -1,11 +1,11 @@
 //! The model while the cards are put together.
 
-use super::Notes;
 use super::control::Control;
 use super::frames::{Axes, Frames};
 use super::grids::Grids;
 use super::list::{self, Ids};
 use super::names::Names;
+use super::notes::Notes;
 use super::table::Table;
 use crate::deck::{Deck, Equation, Node, Place};
 use crate::ledger::Weight;

@@ -1,8 +1,8 @@
 //! Properties of elements: PSOLID, PSHELL, PCOMP, PBAR, PBARL, PBEAM, PBEAML, PROD, PTUBE.
 
-use super::Notes;
 use super::beams;
 use super::fields::Fields;
+use super::notes::Notes;
 use super::table::Table;
 use crate::deck::SectionShape;
 use crate::ledger::Weight;

@@ -1,10 +1,10 @@
 //! The files of a deck: executive and case control, bulk data, INCLUDE, comments.
 
-use super::Bulk;
-use super::Notes;
+use super::bulk::Bulk;
 use super::card::{Card, Line, LineKind};
 use super::control::Control;
 use super::names::Names;
+use super::notes::Notes;
 use super::repeat::{self, Asked, Repeat};
 use crate::deck::Place;
 use crate::ledger::Weight;

@@ -1,6 +1,6 @@
 //! Rows by their number, as grid points, elements and properties are known.
 
-use super::Notes;
+use super::notes::Notes;
 use crate::deck::Place;
 use crate::ledger::Weight;
 use std::ops::Range;
@@ -43,7 +43,7 @@ impl<T: PartialEq> Table<T> {
                 notes.ledger.note(Weight::Nothing, what, why, second.place);
             } else {
                 let found = format!("{what} {} a second time, and another one", second.number);
-                let first = crate::deck::place_words(&notes.files.paths, first.place);
+                let first = crate::place::place_words(&notes.files.paths, first.place);
                 notes.files.fault(
                     second.place,
                     found,
