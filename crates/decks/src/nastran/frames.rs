@@ -4,10 +4,10 @@
 //! third axis, φ about it; angles in degrees.
 
 use super::fields::Fields;
-use super::grids::Grids;
+use super::grids::{Grid, Grids};
 use super::notes::Notes;
-use super::table::Table;
-use crate::deck::Frame;
+use super::table::{Row, Table};
+use crate::deck::{Frame, Node, Place};
 use stridor_mesh::quality::{cross, dot, minus};
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -133,6 +133,39 @@ impl Axes {
         // C on the line of A and B leaves the directions open.
         let e2 = unit(e2).filter(|_| dot(e2, e2).sqrt() > 1e-8)?;
         Some(Axes { kind, origin: a, unit: [cross(e2, e3), e2, e3] })
+    }
+}
+
+/// Grid points in their systems.
+impl Grids {
+    /// The place of a point that a card names.
+    pub fn place_of(&self, id: u64, frames: &Frames, from: Place, notes: &mut Notes) -> Option<[f64; 3]> {
+        let Some(row) = self.table.get(id) else {
+            notes.files.fault(
+                from,
+                format!("grid point {id}, which is not there"),
+                "the number of a GRID card",
+            );
+            return None;
+        };
+        Some(frames.get(self.system_number(&row.value), row.place, notes)?.place(row.value.coordinates))
+    }
+
+    /// All points as nodes.
+    pub fn nodes(&self, frames: &Frames, notes: &mut Notes) -> Vec<Node> {
+        let node = |row: &Row<Grid>| {
+            let axes = frames.get(self.system_number(&row.value), row.place, notes);
+            let position = axes.unwrap_or(BASIC).place(row.value.coordinates);
+            Node { number: row.number, position, place: row.place }
+        };
+        self.table.rows().iter().map(node).collect()
+    }
+
+    /// The system of the displacements of a node; nodes that were added have that of the coordinates.
+    pub fn displacements(&self, node: usize, frames: &Frames, notes: &mut Notes) -> Axes {
+        let Some(row) = self.table.rows().get(node) else { return BASIC };
+        let number = u64::from(row.value.displacements.unwrap_or(self.standard.1));
+        frames.get(number, row.place, notes).unwrap_or(BASIC)
     }
 }
 

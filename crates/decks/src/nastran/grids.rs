@@ -1,20 +1,18 @@
 //! Grid points: GRID, GRDSET; scalar points, which have no place, are noted.
 
 use super::fields::Fields;
-use super::frames::{Axes, BASIC, Frames};
 use super::list::{self, Ids};
 use super::notes::Notes;
 use super::table::Table;
-use crate::deck::{Node, Place};
 use crate::ledger::Weight;
 
 /// A grid point as its card has it; what is blank is as GRDSET has it.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Grid {
-    coordinates: [f64; 3],
+    pub coordinates: [f64; 3],
     system: Option<u32>,
     /// The system of its displacements.
-    displacements: Option<u32>,
+    pub displacements: Option<u32>,
     /// Degrees of freedom that are held always.
     held: Option<[bool; 6]>,
 }
@@ -22,7 +20,7 @@ pub(super) struct Grid {
 #[derive(Debug, Default)]
 pub(super) struct Grids {
     pub table: Table<Grid>,
-    standard: (u32, u32, [bool; 6]),
+    pub standard: (u32, u32, [bool; 6]),
     scalar: Vec<Ids>,
     /// The numbers of scalar points as ranges, ascending and apart.
     scalars: Vec<(u64, u64)>,
@@ -88,43 +86,13 @@ impl Grids {
         at > 0 && id <= self.scalars[at - 1].1
     }
 
-    fn system_number(&self, grid: &Grid) -> u64 {
+    pub fn system_number(&self, grid: &Grid) -> u64 {
         u64::from(grid.system.unwrap_or(self.standard.0))
     }
 
     /// The number of the system that a point is given in.
     pub fn system_of(&self, id: u64) -> Option<u64> {
         Some(self.system_number(&self.table.get(id)?.value))
-    }
-
-    /// The place of a point that a card names.
-    pub fn place_of(&self, id: u64, frames: &Frames, from: Place, notes: &mut Notes) -> Option<[f64; 3]> {
-        let Some(row) = self.table.get(id) else {
-            notes.files.fault(
-                from,
-                format!("grid point {id}, which is not there"),
-                "the number of a GRID card",
-            );
-            return None;
-        };
-        Some(frames.get(self.system_number(&row.value), row.place, notes)?.place(row.value.coordinates))
-    }
-
-    /// All points as nodes.
-    pub fn nodes(&self, frames: &Frames, notes: &mut Notes) -> Vec<Node> {
-        let node = |row: &super::table::Row<Grid>| {
-            let axes = frames.get(self.system_number(&row.value), row.place, notes);
-            let position = axes.unwrap_or(BASIC).place(row.value.coordinates);
-            Node { number: row.number, position, place: row.place }
-        };
-        self.table.rows().iter().map(node).collect()
-    }
-
-    /// The system of the displacements of a node; nodes that were added have that of the coordinates.
-    pub fn displacements(&self, node: usize, frames: &Frames, notes: &mut Notes) -> Axes {
-        let Some(row) = self.table.rows().get(node) else { return BASIC };
-        let number = u64::from(row.value.displacements.unwrap_or(self.standard.1));
-        frames.get(number, row.place, notes).unwrap_or(BASIC)
     }
 
     /// What is always held of a node.

@@ -4,7 +4,6 @@ use super::fields::Fields;
 use super::model::Model;
 use super::names::{Named, Names};
 use super::parameters::Parameters;
-use super::sections::Heavier;
 use super::table::Table;
 use crate::deck::{Elastic, Material};
 use crate::ledger::Weight;
@@ -24,6 +23,14 @@ pub(super) struct Materials {
 }
 
 const HEAT: &str = "heat expansion, strength and reference temperatures are not read";
+
+/// A material whose density is higher by what elements carry.
+pub(super) struct Heavier {
+    pub name: String,
+    pub number: u64,
+    /// What is added.
+    pub density: f64,
+}
 
 impl Materials {
     pub fn card(&mut self, fields: &mut Fields) -> Option<()> {
@@ -70,7 +77,7 @@ impl Materials {
         self.table.get(number).is_none_or(|row| matches!(row.value.elastic, Some(Elastic::Isotropic { .. })))
     }
 
-    pub fn sort(&mut self, notes: &mut super::Notes) {
+    pub fn sort(&mut self, notes: &mut super::notes::Notes) {
         self.table.sort("material", notes);
     }
 

@@ -1,7 +1,7 @@
 //! Sections: elements of one property, under the name of that.
 
 use super::elements::{Elements, Of};
-use super::materials::Materials;
+use super::materials::{Heavier, Materials};
 use super::model::Model;
 use super::names::Named;
 use super::properties::{Class, Properties, Property};
@@ -13,14 +13,6 @@ use stridor_mesh::CellKind;
 
 /// What elements of one section have in common: what they are made of, and of beams the direction of their plane of bending.
 type Key = (Class, u64, Option<(u64, u64)>, Option<[i64; 3]>);
-
-/// A material whose density is higher by what elements carry.
-pub(super) struct Heavier {
-    pub name: String,
-    pub number: u64,
-    /// What is added.
-    pub density: f64,
-}
 
 /// Puts sections and sets of their elements into the deck; materials that they need beside those of the cards are the result.
 pub(super) fn resolve(
