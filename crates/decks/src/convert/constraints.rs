@@ -211,18 +211,12 @@ impl Converter<'_> {
             let grounded: Vec<usize> =
                 spring.ends.iter().filter(|(_, to)| to.is_none()).map(|(node, _)| *node).collect();
             let grounded = self.nodes_in_use(&grounded);
-            if let Some(dof) = spring.dof {
-                if let Some(region) = self.regions.points(&format!("{name}_nodes"), &grounded) {
-                    let count = grounded.len() as f64;
-                    self.spring(
-                        &name,
-                        &region,
-                        None,
-                        direction_of(dof),
-                        dof >= 3,
-                        [count * spring.stiffness, count * spring.damping],
-                    );
-                }
+            if let Some(dof) = spring.dof
+                && let Some(region) = self.regions.points(&format!("{name}_nodes"), &grounded)
+            {
+                let count = grounded.len() as f64;
+                let sums = [count * spring.stiffness, count * spring.damping];
+                self.spring(&name, &region, None, direction_of(dof), dof >= 3, sums);
             }
             for (n, (node, to)) in spring.ends.iter().enumerate() {
                 let Some(to) = to else { continue };

@@ -84,7 +84,7 @@ impl Converter<'_> {
         ));
         for (name, of, [low, high]) in rows {
             let centre = of.moment.map(|moment| if of.mass > 0.0 { moment / of.mass } else { 0.0 });
-            let list = |values: [f64; 3]| values.map(|value| given(value)).join(", ");
+            let list = |values: [f64; 3]| values.map(given).join(", ");
             let size = list(std::array::from_fn(|k| high[k] - low[k]));
             let (mass, volume) = (significant(of.mass, 7), significant(of.volume, 7));
             line(format_args!("| {name} | {mass} | {volume} | {} | {size} |", list(centre)));
