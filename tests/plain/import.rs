@@ -251,3 +251,31 @@ fn every_fault_of_a_deck_is_found_at_once() {
         assert!(text.contains(word), "{word}: {text}");
     }
 }
+
+/// Two bricks that are tied, or touch, have nodes at one place and one section, one set of elements and one of nodes.
+#[test]
+fn pieces_of_a_section_that_touch_are_parts_of_their_own() {
+    let folder = tempfile::tempdir().unwrap();
+    let block = Block { cells: [1, 1, 1], size: [10.0; 3] };
+    let mut text = "*Node, nset=Nall\n".to_string();
+    for (n, [x, y, z]) in block.nodes().into_iter().enumerate() {
+        writeln!(text, "{}, {x}, {y}, {z}\n{}, {}, {y}, {z}", n + 1, n + 11, x + 10.0).unwrap();
+    }
+    text += "*Element, type=C3D8I, elset=Eall\n";
+    let brick = block.bricks()[0];
+    for (e, first) in [1, 11].into_iter().enumerate() {
+        writeln!(text, "{}, {}", e + 1, brick.map(|n| (n + first).to_string()).join(", ")).unwrap();
+    }
+    // S4 and S6: x = 10 of the first, and of the second.
+    text += "*Surface, name=Left\n1, S4\n*Surface, name=Right\n2, S6\n*Tie, name=Glue\nRight, Left\n\
+        *Solid Section, elset=Eall, material=Steel\n*Material, name=Steel\n*Density\n7.85e-9\n*Elastic\n210000, 0.3\n\
+        *Boundary\n1, 1, 3\n3, 1, 3\n5, 1, 3\n*Step\n*Frequency\n4\n*End Step\n";
+    let made = imported(folder.path(), &text);
+    std::fs::write(folder.path().join(Converted::MESH_FILE), to_msh_exactly(&made.mesh).unwrap()).unwrap();
+    std::fs::write(folder.path().join("case.toml"), &made.case).unwrap();
+    let case = read_case(&folder.path().join("case.toml")).unwrap();
+    let prepared = Prepared::new(&case).unwrap_or_else(|error| panic!("{error}"));
+    let parts: Vec<&str> = prepared.model.parts.iter().map(|part| part.name.as_str()).collect();
+    assert_eq!(parts, ["Eall_1", "Eall_2"]);
+    assert_eq!(case.tie.len(), 1);
+}

@@ -169,7 +169,8 @@ fn check_coincident(mesh: &Mesh, apart: &Apart, diagnosis: &mut Diagnosis) {
     pairs.sort_unstable();
     let mut regions_of: BTreeMap<usize, Vec<usize>> =
         pairs.iter().flatten().map(|n| (*n, Vec::new())).collect();
-    for (r, region) in mesh.regions.iter().enumerate() {
+    // Points hold nothing together.
+    for (r, region) in mesh.regions.iter().enumerate().filter(|(_, region)| region.dimension > 0) {
         for e in &region.elements {
             for n in mesh.elements[*e].nodes() {
                 if let Some(regions) = regions_of.get_mut(n) {

@@ -9,6 +9,9 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use stridor_base::connected::lowest_connected;
 use stridor_mesh::CellKind;
 
+/// Nodes closer than this share of the diagonal of a part are at one place.
+const COINCIDENT: f64 = 1e-6;
+
 impl Converter<'_> {
     /// All materials that sections have.
     pub fn materials(&mut self) {
@@ -156,17 +159,32 @@ impl Converter<'_> {
         if pieces.len() == 1 {
             return vec![elements.to_vec()];
         }
-        let size = deck.nodes.iter().flat_map(|node| node.position).fold(0.0f64, |most, x| most.max(x.abs()));
-        // As the check of meshes has it: places to a billionth of the largest coordinate.
-        let place = |node: usize| {
-            deck.nodes[node].position.map(|x| (x / (1e-8 * size.max(f64::MIN_POSITIVE))).round() as i64)
-        };
-        let mut at: HashMap<[i64; 3], usize> = HashMap::new();
         let mut nodes: Vec<usize> = elements.iter().flat_map(nodes_of).copied().collect();
         nodes.sort_unstable();
         nodes.dedup();
-        let touch =
-            nodes.into_iter().any(|node| *at.entry(place(node)).or_insert(lowest[node]) != lowest[node]);
+        // As near as the check of meshes calls one place.
+        let bounds = |k: usize| {
+            let all = nodes.iter().map(|node| deck.nodes[*node].position[k]);
+            all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
+        };
+        let size = (0..3).map(bounds).map(|[low, high]| (high - low).powi(2)).sum::<f64>().sqrt();
+        let near = (COINCIDENT * size).max(f64::MIN_POSITIVE);
+        let cell = |node: usize| deck.nodes[node].position.map(|x| (x / near).floor() as i64);
+        let mut in_cell: HashMap<[i64; 3], Vec<usize>> = HashMap::new();
+        nodes.iter().for_each(|node| in_cell.entry(cell(*node)).or_default().push(*node));
+        let beside = |at: [i64; 3]| {
+            (0..27).map(move |k: i64| [at[0] + k % 3 - 1, at[1] + k / 3 % 3 - 1, at[2] + k / 9 - 1])
+        };
+        let meets = |node: &usize| {
+            let others = beside(cell(*node)).filter_map(|at| in_cell.get(&at)).flatten();
+            others.into_iter().any(|other| {
+                let apart: f64 = (0..3)
+                    .map(|k| (deck.nodes[*node].position[k] - deck.nodes[*other].position[k]).powi(2))
+                    .sum();
+                lowest[*node] != lowest[*other] && apart <= near * near
+            })
+        };
+        let touch = nodes.iter().any(meets);
         if touch { pieces.into_values().collect() } else { vec![elements.to_vec()] }
     }
 
