@@ -141,7 +141,7 @@ class Case:
     folder: str | os.PathLike[str],
     format: str | None = None,
 ) -> Case:
-    """The case of a model of another program (an input file of Abaqus or CalculiX), made in a new folder with its mesh.
+    """The case of a model of another program (Abaqus, CalculiX, NASTRAN, ANSYS), made in a new folder with its mesh.
 
     ``unit`` says which units its numbers are in: ``"m"``, ``"mm"`` (t, N, MPa), ``"mm-kg"``, ``"mm-kg-ms"``, ``"cm"`` or ``"in"``. What was
     read is in ``folder / "import.md"``; what was not and matters is a :class:`CaseWarning`.
