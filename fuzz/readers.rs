@@ -27,7 +27,7 @@ const KIB: usize = 1 << 10;
 
 /// `times` is what an input of the densest kind takes, a list just after it has been doubled and copied: `1,1,1` in a list of
 /// TOML makes some 110 bytes of two, a line of one digit a mode of 64, an empty line of a universal file 32.
-pub const READERS: [Reader; 13] = [
+pub const READERS: [Reader; 16] = [
     Reader {
         name: "mesh",
         read: mesh,
@@ -86,6 +86,9 @@ pub const READERS: [Reader; 13] = [
     },
     // Members of sets that are named again, and parts that are placed again.
     Reader { name: "abaqus", read: abaqus, samples: &[], times: 256, constant: (4 << 10) * KIB },
+    Reader { name: "nastran", read: nastran, samples: &[], times: 256, constant: (4 << 10) * KIB },
+    Reader { name: "ansys", read: ansys, samples: &[], times: 256, constant: (4 << 10) * KIB },
+    Reader { name: "groups", read: groups, samples: &[], times: 256, constant: (4 << 10) * KIB },
 ];
 
 /// log₂: counts of about the same size are the same kind.
@@ -129,6 +132,18 @@ fn deck(bytes: &[u8], format: Format) -> Result<String> {
 
 fn abaqus(bytes: &[u8]) -> Result<String> {
     deck(bytes, Format::Abaqus)
+}
+
+fn nastran(bytes: &[u8]) -> Result<String> {
+    deck(bytes, Format::Nastran)
+}
+
+fn ansys(bytes: &[u8]) -> Result<String> {
+    deck(bytes, Format::Ansys)
+}
+
+fn groups(bytes: &[u8]) -> Result<String> {
+    deck(bytes, Format::Universal)
 }
 
 fn table(bytes: &[u8]) -> Result<String> {
