@@ -135,26 +135,7 @@ class Case:
         """M, C, K, the load, the degrees of freedom and the contact points."""
         return Model._of(self._native.model())
 
-    def import_deck(
-    file: str | os.PathLike[str],
-    unit: str,
-    folder: str | os.PathLike[str],
-    format: str | None = None,
-) -> Case:
-    """The case of a model of another program (Abaqus, CalculiX, NASTRAN, ANSYS), made in a new folder with its mesh.
-
-    ``unit`` says which units its numbers are in: ``"m"``, ``"mm"`` (t, N, MPa), ``"mm-kg"``, ``"mm-kg-ms"``, ``"cm"`` or ``"in"``. What was
-    read is in ``folder / "import.md"``; what was not and matters is a :class:`CaseWarning`.
-
-    Raises :class:`InputError` with every fault of the file; of the case, too, where it is not complete.
-    """
-    native, sentences = _native.Case.from_deck(Path(file), unit, Path(folder), format)
-    for sentence in sentences:
-        warnings.warn(sentence, CaseWarning, stacklevel=2)
-    return Case(native)
-
-
-def run(
+    def run(
         self,
         only: str | None = None,
         *,
@@ -194,6 +175,25 @@ def run(
 
     def __repr__(self) -> str:
         return f"<stridor.Case {self.title!r}>"
+
+
+def import_deck(
+    file: str | os.PathLike[str],
+    unit: str,
+    folder: str | os.PathLike[str],
+    format: str | None = None,
+) -> Case:
+    """The case of a model of another program (Abaqus, CalculiX, NASTRAN, ANSYS), made in a new folder with its mesh.
+
+    ``unit`` says which units its numbers are in: ``"m"``, ``"mm"`` (t, N, MPa), ``"mm-kg"``, ``"mm-kg-ms"``, ``"cm"`` or ``"in"``. What was
+    read is in ``folder / "import.md"``; what was not and matters is a :class:`CaseWarning`.
+
+    Raises :class:`InputError` with every fault of the file; of the case, too, where it is not complete.
+    """
+    native, sentences = _native.Case.from_deck(Path(file), unit, Path(folder), format)
+    for sentence in sentences:
+        warnings.warn(sentence, CaseWarning, stacklevel=2)
+    return Case(native)
 
 
 def run(
