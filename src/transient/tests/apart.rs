@@ -60,7 +60,7 @@ fn both(system: &System, scheme: Scheme, acts: Acts) -> [usize; 2] {
     })
     .unwrap();
     assert!(
-        end.split.0 == 0 && within(end.worst_residual, 1e-8, Tolerance),
+        end.split.0 == 0 && within(end.worst_residual, 1e-7, Tolerance),
         "{:?} {:e}",
         end.split,
         end.worst_residual
