@@ -12,6 +12,7 @@
 //! | [`schema`] | tables of a TOML file, each key declared once |
 //! | [`pages`] | memory in large pages |
 //! | [`memory`] | memory available to the process |
+//! | [`solids`] | what solid materials have |
 //! | [`input`] | input files: regular, of a bounded size |
 //! | [`linalg`] | sparse symmetric factorisation, eigenvalues; knows no mechanics |
 //! | [`system`] | M, C, K and the sliding interface: the input of every analysis |
@@ -71,7 +72,7 @@ pub mod uncertainty;
 pub mod validation;
 
 // Members of the workspace, below `crates/`.
-pub use stridor_base::{bounds, connected, error, input, memory, numbers, pages, progress};
+pub use stridor_base::{bounds, connected, error, input, memory, numbers, pages, progress, solids};
 pub use stridor_dataset as dataset;
 pub use stridor_decks as decks;
 pub use stridor_linalg as linalg;

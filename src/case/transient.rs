@@ -66,6 +66,11 @@ declare! {
 }
 
 impl TransientAnalysis {
+    /// Whether a reduced model moves: where the case does not say, of contacts of many points.
+    pub fn is_reduced(&self, many_points: bool) -> bool {
+        self.model.map_or(many_points, |model| model == ModelChoice::Reduced)
+    }
+
     /// What a contact keeps in motion that a load closes. Where the case does not say: a load that runs in time is a device whose
     /// motion is known by its force; a constant one only says where the bodies stand, as in the complex eigenvalues.
     pub fn hold_of(&self, contact: &str) -> HoldChoice {

@@ -1,10 +1,11 @@
 //! `stridor import`: a case and a mesh of a model of another program.
 
 use super::mesh::refuse_existing;
+use super::new::{create, schema_line, write_into};
 use super::output::{Common, SUCCESS, give, say};
 use crate::case::read_case;
 use crate::decks::{self, Converted, Deck, Format, Units, convert};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::job::{Prepared, check_case};
 use crate::mesh::to_msh_exactly;
 use clap::Args;
@@ -29,6 +30,9 @@ pub struct ImportOptions {
 pub fn run(options: &ImportOptions, common: &Common) -> Result<u8> {
     let folder = &options.out;
     let (deck, made) = import_deck(&options.file, &options.unit, options.format.as_deref(), folder)?;
+    if common.quiet && !common.json {
+        return Ok(SUCCESS);
+    }
     let case = folder.join("case.toml");
     let valid = valid(&case);
     if common.json {
@@ -46,12 +50,10 @@ pub fn run(options: &ImportOptions, common: &Common) -> Result<u8> {
         ))?;
         return Ok(SUCCESS);
     }
-    if !common.quiet {
-        say(summary(&made, deck.nodes.len(), deck.elements.len()))?;
-        match valid {
-            Ok(()) => say(format!("{} is valid. Next: stridor run {}", case.display(), case.display()))?,
-            Err(error) => say(format!("warning: {} does not run yet. {error}", case.display()))?,
-        }
+    say(summary(&made, deck.nodes.len(), deck.elements.len()))?;
+    match valid {
+        Ok(()) => say(format!("{} is valid. Next: stridor run {}", case.display(), case.display()))?,
+        Err(error) => say(format!("warning: {} does not run yet. {error}", case.display()))?,
     }
     Ok(SUCCESS)
 }
@@ -77,21 +79,10 @@ pub fn import_deck(
 
 fn write(folder: &Path, made: &Converted) -> Result<()> {
     let mesh = to_msh_exactly(&made.mesh)?;
-    let failed = |path: &Path, error| Error::io(path, error, "Choose a folder that can be written");
-    std::fs::create_dir_all(folder).map_err(|error| failed(folder, error))?;
-    let schema = super::schema::of_cases();
-    let case = format!("#:schema case.schema.json\n{}", made.case);
-    let files = [
-        ("case.toml", &case),
-        (Converted::MESH_FILE, &mesh),
-        ("import.md", &made.page),
-        ("case.schema.json", &schema),
-    ];
-    for (name, text) in files {
-        let path = folder.join(name);
-        std::fs::write(&path, text).map_err(|error| failed(&path, error))?;
-    }
-    Ok(())
+    create(folder)?;
+    write_into(folder, "case.toml", &format!("{}\n{}", schema_line(), made.case))?;
+    write_into(folder, Converted::MESH_FILE, &mesh)?;
+    write_into(folder, "import.md", &made.page)
 }
 
 fn valid(case: &Path) -> Result<()> {

@@ -46,9 +46,27 @@ pub fn new_case(folder: &Path, template: &str) -> Result<()> {
 /// Writes a case, the files that it reads, and the schema of its keys.
 fn write(folder: &Path, template: Template) -> Result<()> {
     refuse_existing(folder, "Choose another name, or move it away")?;
-    let failed = |path: &Path, error| Error::io(path, error, "Choose a folder that can be written");
-    std::fs::create_dir_all(folder).map_err(|error| failed(folder, error))?;
-    template.write(folder, &format!("#:schema {SCHEMA}"))?;
-    let schema = folder.join(SCHEMA);
-    std::fs::write(&schema, super::schema::of_cases()).map_err(|error| failed(&schema, error))
+    create(folder)?;
+    template.write(folder, &schema_line())
+}
+
+/// The first line of a case beside its schema.
+pub(super) fn schema_line() -> String {
+    format!("#:schema {SCHEMA}")
+}
+
+/// Makes a folder for a case, with the schema of its keys.
+pub(super) fn create(folder: &Path) -> Result<()> {
+    std::fs::create_dir_all(folder).map_err(|error| unwritten(folder, error))?;
+    write_into(folder, SCHEMA, &super::schema::of_cases())
+}
+
+/// Writes a file of a case.
+pub(super) fn write_into(folder: &Path, name: &str, text: &str) -> Result<()> {
+    let path = folder.join(name);
+    std::fs::write(&path, text).map_err(|error| unwritten(&path, error))
+}
+
+fn unwritten(path: &Path, error: std::io::Error) -> Error {
+    Error::io(path, error, "Choose a folder that can be written")
 }

@@ -1,7 +1,8 @@
 //! Unsymmetric terms as a low-rank interface: K_c = W k Wᵀ and C_c = W c Wᵀ.
 
 use crate::equilibrium::{ContactBlock, PointState, SteadySliding, directions, linearize, linearize_points};
-use crate::linalg::{SparseVector, c64};
+use crate::linalg::sparse::entry;
+use crate::linalg::{SparseMatrix, SparseVector, c64};
 use crate::system::{Coupling, System};
 use std::collections::BTreeMap;
 
@@ -113,6 +114,21 @@ impl<'a> Interface<'a> {
     pub(crate) fn extents(&self, [re, im]: [&[f64]; 2]) -> Vec<f64> {
         let extent = |(i, w): (usize, f64)| w.abs() * re[i].hypot(im[i]);
         self.directions.iter().map(|direction| direction.iter().map(extent).sum()).collect()
+    }
+
+    /// W k Wᵀ and W c Wᵀ as sparse matrices (n × n).
+    pub fn assembled(&self, n: usize) -> [SparseMatrix; 2] {
+        let sum = |of: fn(&InterfaceTerm) -> f64| {
+            let mut entries = Vec::new();
+            for term in self.terms.iter().filter(|term| of(term) != 0.0) {
+                for (i, a) in self.directions[term.row].iter() {
+                    let column = self.directions[term.column].iter();
+                    entries.extend(column.map(|(j, b)| entry(i, j, of(term) * a * b)));
+                }
+            }
+            SparseMatrix::try_new_from_triplets(n, n, &entries).expect("directions of the system")
+        };
+        [sum(|term| term.stiffness), sum(|term| term.damping)]
     }
 
     /// Wᵀ x.

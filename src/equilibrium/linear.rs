@@ -3,7 +3,7 @@
 use super::point_laws::{respond, slid};
 use super::{PointState, SteadySliding};
 use crate::error::Result;
-use crate::linalg::sparse::{add_scaled, entry, multiply_vector, sum_of_squares};
+use crate::linalg::sparse::{add_scaled, multiply_vector, sum_of_squares};
 use crate::linalg::{SparseMatrix, SparseVector};
 use crate::system::{
     ContactForces, ContactMotion, ContactPoint, ContactTangent, Coupling, Structure, System,
@@ -28,29 +28,6 @@ pub struct ContactBlock {
     pub stiffness: [[f64; 3]; 3],
     /// c \[N s/m\]: the slip velocity is (V − t₁ᵀu̇, −t₂ᵀu̇), which turns the signs of its columns.
     pub damping: [[f64; 3]; 3],
-}
-
-impl LinearContact {
-    /// K_c and C_c as matrices (n × n), for other programs.
-    pub fn assembled(&self, system: &System) -> [SparseMatrix; 2] {
-        let points: Vec<_> = system.points().map(|(_, point)| directions(point)).collect();
-        let sum = |of: fn(&ContactBlock) -> &[[f64; 3]; 3]| {
-            let mut entries = Vec::new();
-            for block in &self.blocks {
-                let u = points[block.point];
-                for (i, j) in (0..9).map(|k| (k / 3, k % 3)).filter(|(i, j)| of(block)[*i][*j] != 0.0) {
-                    for (row, a) in u[i].iter() {
-                        entries.extend(
-                            u[j].iter().map(|(column, b)| entry(row, column, a * of(block)[i][j] * b)),
-                        );
-                    }
-                }
-            }
-            let n = system.n_dofs();
-            SparseMatrix::try_new_from_triplets(n, n, &entries).expect("directions of the system")
-        };
-        [sum(|block| &block.stiffness), sum(|block| &block.damping)]
-    }
 }
 
 impl ContactBlock {

@@ -7,7 +7,8 @@ use crate::case::{
     CalibrateAnalysis, Case, ContactPoints, ContactState, Matrices, SQUEAL, Slide, TransientAnalysis,
     path_matches,
 };
-use crate::equilibrium::{linearize, solve_steady, tangent_stiffness};
+use crate::dynamics::Interface;
+use crate::equilibrium::{solve_steady, tangent_stiffness};
 use crate::error::Result;
 use crate::error::read::read_bytes;
 use crate::linalg::SparseMatrix;
@@ -110,10 +111,12 @@ fn small_motions(prepared: &Prepared) -> Result<ConstantMatrices> {
     pressed::check(prepared)?;
     let system = &prepared.system;
     let steady = solve_steady(system, &prepared.steady_options(), &())?;
-    let [contact_stiffness, contact_damping] = linearize(system, &steady).assembled(system);
     let tangent = tangent_stiffness(system, &steady.displacement)?.into_owned();
     let structure = Structure { stiffness: tangent.into(), ..system.structure.clone() };
     let own = System { structure, ..system.clone() }.constant_matrices()?;
+    // What is imported is in `own`.
+    let contacts = System { coupling: None, ..system.clone() };
+    let [contact_stiffness, contact_damping] = Interface::new(&contacts, &steady).assembled(system.n_dofs());
     let stiffness = add_scaled(&[(1.0, &own.stiffness), (1.0, &contact_stiffness)]);
     let damping = match &own.damping {
         Some(damping) => Some(add_scaled(&[(1.0, damping), (1.0, &contact_damping)])),

@@ -5,12 +5,13 @@ use super::modes::real_modes_below;
 use super::prepared::Prepared;
 use super::states::keeps_the_structure;
 use super::studies::{SHARED, UNCERTAINTY, studies};
-use crate::case::{ModelChoice, TransientAnalysis};
-use crate::equilibrium::FEW_POINTS;
+use crate::case::TransientAnalysis;
 use crate::error::{Error, Result};
 use crate::linalg::sparse::{add_scaled, sum_of_squares};
 use crate::memory::{Available, available};
+use crate::reduction::has_many_points;
 use crate::structure::{Model, Part, as_plate};
+use crate::system::System;
 use std::f64::consts::{PI, TAU};
 
 /// Runs of fewer degrees of freedom fit any machine, with as many modes as they can have: 14 vectors each take 0.4 GiB.
@@ -167,7 +168,7 @@ pub fn expected_memory(prepared: &Prepared, selection: Selection) -> Result<Opti
     };
     let skew = prepared.system.skew().map_or(0.0, |_| SKEW_MATRICES * run.matrix());
     let moves = case.transient.as_ref().filter(|_| selection.includes("transient", case));
-    let motion = moves.map_or(0.0, |wanted| run.motion(prepared.system.points().count(), wanted));
+    let motion = moves.map_or(0.0, |wanted| run.motion(&prepared.system, wanted));
     let bytes = run.peak(kind) + skew + samples + motion;
     if dofs < LARGE.0 && bytes < LARGE.1 {
         return Ok(None);
@@ -201,10 +202,9 @@ struct ProblemSize {
 impl ProblemSize {
     /// What motion in time takes besides \[bytes\]: of the full model square matrices of the contact directions, of a reduced one its
     /// vectors, which contacts of many points need many of.
-    fn motion(&self, points: usize, wanted: &TransientAnalysis) -> f64 {
-        let (directions, many) = (3.0 * points as f64, points > FEW_POINTS);
-        let reduced = wanted.model.map_or(many, |model| model == ModelChoice::Reduced);
-        if !reduced {
+    fn motion(&self, system: &System, wanted: &TransientAnalysis) -> f64 {
+        let (directions, many) = (3.0 * system.points().count() as f64, has_many_points(system));
+        if !wanted.is_reduced(many) {
             return 8.0 * DENSE_MATRICES * directions * directions;
         }
         let vectors = if many { 2.0 * self.modes + CONTACT_SHAPES } else { self.modes + directions };

@@ -77,9 +77,7 @@ pub(super) fn in_plane(
         };
     }
     // Both sides of a disc are seen from the same side.
-    let towards = positive(mean.into())
-        .or_else(|| surface.faces.first().map(|_| [0.0, 0.0, 1.0]))
-        .unwrap_or([0.0, 0.0, 1.0]);
+    let towards = positive(mean.into()).unwrap_or([0.0, 0.0, 1.0]);
     let sliding = surface.faces.iter().fold([0.0; 3], |sum, face| along(sum, 1.0, face.slides));
     let across = unit(along(sliding, -dot(sliding, towards), towards));
     let view = View::facing(towards).expect("a direction");

@@ -6,7 +6,7 @@ use crate::dynamics::{Operator, Shifted};
 use crate::equilibrium::SteadySliding;
 use crate::error::Result;
 use crate::linalg::factor::{QuadraticProblem, QuadraticSolver};
-use crate::linalg::sparse::{add_scaled, entry};
+use crate::linalg::sparse::add_scaled;
 use crate::linalg::toar::toar;
 use crate::linalg::{SparseMatrix, c64};
 use crate::progress::Observer;
@@ -162,21 +162,7 @@ impl<'s, 'a> SecondMethod<'s, 'a> {
 
 /// M, C + C_c and K + K_σ + iH + K_c with the interface assembled; modal damping stays of low rank.
 fn assembled<'s>(operator: &'s Operator<'_>) -> QuadraticProblem<'s> {
-    let n = operator.n();
-    let (mut stiff, mut damped) = (Vec::new(), Vec::new());
-    for term in &operator.interface.terms {
-        let (row, column) =
-            (operator.interface.directions[term.row], operator.interface.directions[term.column]);
-        for (i, a) in row.iter() {
-            for (j, b) in column.iter() {
-                stiff.push(entry(i, j, term.stiffness * a * b));
-                damped.push(entry(i, j, term.damping * a * b));
-            }
-        }
-    }
-    let sparse =
-        |entries: &[_]| SparseMatrix::try_new_from_triplets(n, n, entries).expect("directions of the system");
-    let (stiff, damped) = (sparse(&stiff), sparse(&damped));
+    let [stiff, damped] = operator.interface.assembled(operator.n());
     let (one, i) = (c64::new(1.0, 0.0), c64::new(0.0, 1.0));
     let mut stiffness: Vec<(c64, &SparseMatrix)> = vec![(one, &operator.stiffness), (one, &stiff)];
     let mut damping: Vec<(f64, &SparseMatrix)> = vec![(0.0, operator.mass), (1.0, &damped)];

@@ -107,6 +107,22 @@ pub struct Surface {
     pub internal: bool,
 }
 
+impl Surface {
+    /// The nodes of its faces and shells, and its own; ascending.
+    pub fn all_nodes(&self, elements: &[Element]) -> Vec<usize> {
+        let mut nodes = self.nodes.clone();
+        for (element, side) in &self.faces {
+            let element = &elements[*element];
+            let (_, of_side) = element.kind.table().sides[*side];
+            nodes.extend(of_side.iter().map(|node| element.nodes[usize::from(*node)]));
+        }
+        nodes.extend(self.shells.iter().flat_map(|(element, _)| &elements[*element].nodes));
+        nodes.sort_unstable();
+        nodes.dedup();
+        nodes
+    }
+}
+
 /// Which face of a shell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ShellFace {
@@ -429,6 +445,11 @@ impl Deck {
     /// The set of elements of this name.
     pub fn element_set(&self, name: &str) -> Option<&Set> {
         self.element_sets.iter().find(|set| set.name.eq_ignore_ascii_case(name))
+    }
+
+    /// The material of this name.
+    pub fn material(&self, name: &str) -> Option<&Material> {
+        self.materials.iter().find(|material| material.name.eq_ignore_ascii_case(name))
     }
 
     /// The surface of this name.

@@ -15,6 +15,7 @@ mod format;
 mod ledger;
 mod nastran;
 mod place;
+mod skin;
 mod text;
 mod universal;
 

@@ -2,10 +2,11 @@
 //!
 //! Faults make an analysis wrong or impossible; warnings say that a result may be poor.
 
+use super::coincident::coincident;
 use super::hanging::{Hanging, hanging};
 use super::jacobian::keeps_orientation;
 use super::orient::neighbours;
-use super::quality::{dot, face_shape, minus, norm};
+use super::quality::face_shape;
 use super::{Cell, Mesh, Region};
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 use stridor_base::connected::lowest_connected;
@@ -18,8 +19,6 @@ pub const POOR_ANGLE_DEG: f64 = 15.0;
 pub const POOR_ASPECT: f64 = 8.0;
 /// The largest warp of a quadrilateral that passes without a warning.
 pub const POOR_WARP: f64 = 0.05;
-/// Nodes closer than this share of the bounding box's diagonal are coincident.
-const COINCIDENT: f64 = 1e-6;
 /// How many numbers a message lists before it says how many more there are.
 const LISTED: usize = 5;
 
@@ -145,28 +144,11 @@ fn check_unreferenced(mesh: &Mesh, diagnosis: &mut Diagnosis) {
 
 /// Nodes at the same place: a fault inside a region (a hidden crack), a warning between regions.
 fn check_coincident(mesh: &Mesh, apart: &Apart, diagnosis: &mut Diagnosis) {
-    let Some([low, high]) = bounds(mesh) else { return };
-    let tolerance = COINCIDENT * norm(minus(high, low));
-    if tolerance == 0.0 {
-        return;
-    }
-    // Along a skew direction hardly any but coincident nodes are neighbours.
-    let mut order: Vec<(f64, usize)> =
-        mesh.nodes.iter().enumerate().map(|(n, p)| (dot(*p, [0.577, 0.613, 0.541]), n)).collect();
-    order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-    let mut pairs: Vec<[usize; 2]> = Vec::new();
-    for (k, (s, n)) in order.iter().enumerate() {
-        let near = order[k + 1..].iter().take_while(|other| other.0 - s <= tolerance);
-        // One partner is enough: the nodes of a heap form a chain.
-        let partner =
-            near.map(|other| other.1).find(|m| norm(minus(mesh.nodes[*n], mesh.nodes[*m])) <= tolerance);
-        let joined = partner.filter(|m| !apart.are(&[*n], &[*m]));
-        pairs.extend(joined.map(|m| [*n.min(&m), *n.max(&m)]));
-    }
+    let mut pairs = coincident(&mesh.nodes);
+    pairs.retain(|[n, m]| !apart.are(&[*n], &[*m]));
     if pairs.is_empty() {
         return;
     }
-    pairs.sort_unstable();
     let mut regions_of: BTreeMap<usize, Vec<usize>> =
         pairs.iter().flatten().map(|n| (*n, Vec::new())).collect();
     // Points hold nothing together.

@@ -1,7 +1,7 @@
 //! Cells that are turned inside out: the sign of the Jacobian at every node.
 
-use super::quality::{cross, dot, norm};
-use super::{Cell, CellShape, Mesh};
+use super::quality::{cross, dot};
+use super::{Cell, CellShape, Mesh, QuadraturePoint};
 
 /// How near to its apex a pyramid is looked at, as a share of the way from its centre: there the Jacobian has no value.
 const NEAR_APEX: f64 = 0.9;
@@ -35,16 +35,8 @@ pub(super) fn keeps_orientation(mesh: &Mesh, cell: &Cell) -> bool {
 
 /// ∫ dl, dA or dV of a cell \[m, m², m³\].
 pub(super) fn measure(mesh: &Mesh, cell: &Cell) -> f64 {
-    let kind = cell.kind();
-    let size = |at: [f64; 3]| {
-        let [a, b, c] = cell.tangents(&mesh.nodes, at);
-        match kind.dimension() {
-            3 => dot(cross(a, b), c),
-            2 => norm(cross(a, b)),
-            _ => norm(a),
-        }
-    };
-    kind.quadrature(5).into_iter().map(|point| point.weight * size(point.at)).sum()
+    let scaled = |point: QuadraturePoint| point.weight * cell.scale(&mesh.nodes, point.at);
+    cell.kind().quadrature(5).into_iter().map(scaled).sum()
 }
 
 #[cfg(test)]

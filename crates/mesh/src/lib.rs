@@ -21,6 +21,7 @@
 
 mod cell;
 pub mod check;
+mod coincident;
 pub mod generate;
 pub mod gmsh;
 mod hanging;
@@ -37,6 +38,7 @@ mod write;
 
 pub use cell::{Cell, cell_nodes};
 pub use check::{Diagnosis, diagnose, diagnose_apart};
+pub use coincident::coincident;
 pub use gmsh::read;
 pub use info::Info;
 pub use kind::{CellKind, CellShape, CellTable, NamedKind, NumberedKind, Order, Program};

@@ -4,15 +4,10 @@ use crate::case::Case;
 use crate::error::Fault;
 use crate::numbers::{given, significant};
 use crate::schema::dotted;
+use crate::solids::{DENSITY, MODULUS, SPEED};
 use crate::structure::Material;
 use std::ops::RangeInclusive;
 
-/// E \[Pa\] from flexible foams to diamond, and ρ \[kg/m³\] from foams to osmium: the axes of the chart of modulus over density
-/// in M. F. Ashby, Materials Selection in Mechanical Design (charts of material properties), a little widened.
-const MODULUS: RangeInclusive<f64> = 1e5..=1.3e12;
-const DENSITY: RangeInclusive<f64> = 10.0..=2.3e4;
-/// √(E/ρ) \[m/s\], the speed of waves along a rod: rubber has some 30, steel 5,200, beryllium 12,900, diamond 18,000.
-const SPEED: RangeInclusive<f64> = 10.0..=2e4;
 /// η above which a material loses more than 2π times the energy that it stores in a cycle.
 const LOSS: f64 = 1.0;
 

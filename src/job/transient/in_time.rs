@@ -1,6 +1,6 @@
 //! Where a run in time starts from.
 
-use crate::case::{ModelChoice, TransientAnalysis};
+use crate::case::TransientAnalysis;
 use crate::job::operating_point::OperatingPoint;
 use crate::reduction::has_many_points;
 use crate::results::{ComplexResult, Geometry};
@@ -19,11 +19,9 @@ pub struct InTime<'a> {
 const COMPARED: usize = 100;
 
 impl InTime<'_> {
-    /// Whether a reduced model moves: where the case does not say, of contacts of many points.
+    /// Whether a reduced model moves.
     pub(super) fn is_reduced(&self, wanted: &TransientAnalysis) -> bool {
-        wanted
-            .model
-            .map_or_else(|| has_many_points(&self.point.system), |model| model == ModelChoice::Reduced)
+        wanted.is_reduced(has_many_points(&self.point.system))
     }
 
     /// Steps of a reduced model that the full one makes, too; the full one of many points makes none unless it is asked to.

@@ -10,19 +10,10 @@ use std::collections::BTreeSet;
 impl Reader {
     /// The nodes of a surface or of a set of nodes.
     fn surface_nodes(&mut self, space: usize, name: &str, place: Place) -> Vec<usize> {
-        let Some(surface) = self.surface_called(space, name).cloned() else {
-            return self.nodes_of(space, name, place).unwrap_or_default();
-        };
-        let mut nodes = surface.nodes;
-        for (element, side) in surface.faces {
-            let element = &self.deck.elements[element];
-            let (_, of_side) = element.kind.table().sides[side];
-            nodes.extend(of_side.iter().map(|node| element.nodes[usize::from(*node)]));
+        match self.surface_called(space, name) {
+            Some(surface) => surface.all_nodes(&self.deck.elements),
+            None => self.nodes_of(space, name, place).unwrap_or_default(),
         }
-        nodes.extend(surface.shells.iter().flat_map(|(element, _)| &self.deck.elements[*element].nodes));
-        nodes.sort_unstable();
-        nodes.dedup();
-        nodes
     }
 
     /// *COUPLING: a node and a surface; *KINEMATIC or *DISTRIBUTING below says how.
@@ -44,6 +35,15 @@ impl Reader {
             kind: CouplingKind::Rigid,
             place: found.place(),
         });
+    }
+
+    /// A coupling of nodes that have no name.
+    fn couple(&mut self, found: Found<'_>, reference: usize, mut nodes: Vec<usize>, kind: CouplingKind) {
+        nodes.sort_unstable();
+        nodes.dedup();
+        nodes.retain(|node| *node != reference);
+        let (name, of, place) = (String::new(), None, found.place());
+        self.deck.couplings.push(Coupling { name, reference, nodes, of, kind, place });
     }
 
     /// *KINEMATIC: degrees of freedom that are coupled; all when there are none.
@@ -110,18 +110,7 @@ impl Reader {
             coupled.iter_mut().zip(own.unwrap_or_default()).for_each(|(all, own)| *all |= own);
         }
         self.note_coupled(found, coupled);
-        nodes.sort_unstable();
-        nodes.dedup();
-        nodes.retain(|node| *node != reference);
-        let kind = CouplingKind::Rigid;
-        self.deck.couplings.push(Coupling {
-            name: String::new(),
-            reference,
-            nodes,
-            of: None,
-            kind,
-            place: found.place(),
-        });
+        self.couple(found, reference, nodes, CouplingKind::Rigid);
     }
 
     /// *DISTRIBUTING COUPLING, ELSET: nodes with weights; the set has one DCOUP3D, whose node is the one that follows.
@@ -150,18 +139,7 @@ impl Reader {
             let why = "weights of the nodes are not read; areas are";
             self.deck.ledger.note(Weight::Perhaps, "*DISTRIBUTING COUPLING", why, found.place());
         }
-        nodes.sort_unstable();
-        nodes.dedup();
-        nodes.retain(|node| *node != reference);
-        let kind = CouplingKind::Averaging;
-        self.deck.couplings.push(Coupling {
-            name: String::new(),
-            reference,
-            nodes,
-            of: None,
-            kind,
-            place: found.place(),
-        });
+        self.couple(found, reference, nodes, CouplingKind::Averaging);
     }
 
     /// *RIGID BODY: elements or nodes that follow a node.
@@ -186,17 +164,6 @@ impl Reader {
             let items = self.items_of(space, name, found.place()).unwrap_or_default();
             nodes.extend(items.into_iter().flat_map(|item| self.nodes_of_item(item)));
         }
-        nodes.sort_unstable();
-        nodes.dedup();
-        nodes.retain(|node| *node != reference);
-        let kind = CouplingKind::Rigid;
-        self.deck.couplings.push(Coupling {
-            name: String::new(),
-            reference,
-            nodes,
-            of: None,
-            kind,
-            place: found.place(),
-        });
+        self.couple(found, reference, nodes, CouplingKind::Rigid);
     }
 }

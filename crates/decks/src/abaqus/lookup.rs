@@ -2,9 +2,9 @@
 
 use super::blocks;
 use super::reader::Reader;
-use super::space::Item;
+use super::space::{Item, Space};
 use crate::deck::{Place, Surface};
-use std::collections::HashSet;
+use std::collections::{BTreeMap, HashSet};
 
 /// The most dots of a name that may stand before what is within an instance.
 const MOST_DOTS: usize = 16;
@@ -25,30 +25,44 @@ impl Reader {
         found
     }
 
+    /// What `get` finds of a name in the spaces that it may be of.
+    fn called<'s, T>(
+        &'s self,
+        space: usize,
+        name: &str,
+        get: impl Fn(&'s Space, &str) -> Option<T>,
+    ) -> Option<T> {
+        self.candidates(space, name).into_iter().find_map(|(space, name)| get(&self.spaces[space], name))
+    }
+
+    /// Members of a set that was looked for; a fault where it is not there, or names too many.
+    fn found<T>(
+        &mut self,
+        found: Option<Vec<T>>,
+        name: &str,
+        place: Place,
+        expected: &str,
+    ) -> Option<Vec<T>> {
+        match &found {
+            Some(members) if !self.may_name(members.len(), place) => return None,
+            Some(_) => {}
+            None => self.files.fault(place, format!("`{}`", blocks::short(name)), expected),
+        }
+        found
+    }
+
     /// The nodes of a set, or the node of a number; none where there is no such thing.
     pub fn nodes_called(&self, space: usize, name: &str) -> Option<Vec<usize>> {
-        self.candidates(space, name).into_iter().find_map(|(space, name)| {
-            let space = &self.spaces[space];
-            let numbered =
-                || name.parse().ok().and_then(|number: u64| space.nodes.get(&number)).map(|node| vec![*node]);
-            numbered().or_else(|| space.node_sets.get(name).map(|set| set.members.clone()))
+        self.called(space, name, |space, name| {
+            let set = || space.node_sets.get(name).map(|set| set.members.clone());
+            numbered(&space.nodes, name).or_else(set)
         })
     }
 
     /// [`Reader::nodes_called`], or a fault.
     pub fn nodes_of(&mut self, space: usize, name: &str, place: Place) -> Option<Vec<usize>> {
         let found = self.nodes_called(space, name);
-        if found.as_ref().is_some_and(|found| !self.may_name(found.len(), place)) {
-            return None;
-        }
-        if found.is_none() {
-            self.files.fault(
-                place,
-                format!("`{}`", blocks::short(name)),
-                "the number of a node or the name of a set of nodes",
-            );
-        }
-        found
+        self.found(found, name, place, "the number of a node or the name of a set of nodes")
     }
 
     /// The one node of a number or of a set of one, or a fault.
@@ -65,36 +79,21 @@ impl Reader {
 
     /// The elements of a set, or the element of a number; none where there is no such thing.
     pub fn items_called(&self, space: usize, name: &str) -> Option<Vec<Item>> {
-        self.candidates(space, name).into_iter().find_map(|(space, name)| {
-            let space = &self.spaces[space];
-            let numbered = || {
-                name.parse().ok().and_then(|number: u64| space.elements.get(&number)).map(|item| vec![*item])
-            };
-            numbered().or_else(|| space.element_sets.get(name).map(|set| set.items.clone()))
+        self.called(space, name, |space, name| {
+            let set = || space.element_sets.get(name).map(|set| set.items.clone());
+            numbered(&space.elements, name).or_else(set)
         })
     }
 
     /// [`Reader::items_called`], or a fault.
     pub fn items_of(&mut self, space: usize, name: &str, place: Place) -> Option<Vec<Item>> {
         let found = self.items_called(space, name);
-        if found.as_ref().is_some_and(|found| !self.may_name(found.len(), place)) {
-            return None;
-        }
-        if found.is_none() {
-            self.files.fault(
-                place,
-                format!("`{}`", blocks::short(name)),
-                "the number of an element or the name of a set of elements",
-            );
-        }
-        found
+        self.found(found, name, place, "the number of an element or the name of a set of elements")
     }
 
     /// The surface of this name as the deck calls it, or a fault.
     pub fn surface_of(&mut self, space: usize, name: &str, place: Place) -> Option<String> {
-        let candidates = self.candidates(space, name);
-        let found = candidates.into_iter().find_map(|(space, name)| self.spaces[space].surfaces.get(name));
-        let found = found.map(|surface| surface.name.clone());
+        let found = self.surface_called(space, name).map(|surface| surface.name.clone());
         if found.is_none() {
             self.files.fault(place, format!("`{}`", blocks::short(name)), "the name of a *SURFACE");
         }
@@ -103,8 +102,7 @@ impl Reader {
 
     /// The surface of this name.
     pub fn surface_called(&self, space: usize, name: &str) -> Option<&Surface> {
-        let candidates = self.candidates(space, name);
-        candidates.into_iter().find_map(|(space, name)| self.spaces[space].surfaces.get(name))
+        self.called(space, name, |space, name| space.surfaces.get(name))
     }
 
     /// Whether so many members of sets may still be named; a fault where not.
@@ -136,4 +134,9 @@ impl Reader {
             }
         }
     }
+}
+
+/// What has a number.
+fn numbered<T: Copy>(all: &BTreeMap<u64, T>, number: &str) -> Option<Vec<T>> {
+    number.parse().ok().and_then(|number: u64| all.get(&number)).map(|one| vec![*one])
 }

@@ -19,19 +19,14 @@ impl Reader {
             let items = self.items_of(of, elements, found.place()).unwrap_or_default();
             members.extend(items.into_iter().flat_map(|item| self.nodes_of_item(item)));
         }
-        for row in found.rows() {
-            if found.block.has("GENERATE") {
-                members.extend(self.range(&row, of, "NSET", |space| &space.nodes));
-                continue;
-            }
-            for cell in row.cells.iter().filter(|cell| !cell.is_empty()) {
-                if cell.parse::<u64>().is_ok() && self.nodes_called(of, cell).is_none() {
-                    self.missing("NSET", row.place);
-                    continue;
-                }
-                members.extend(self.nodes_of(of, cell, row.place).unwrap_or_default());
-            }
-        }
+        members.extend(self.listed(
+            found,
+            of,
+            "NSET",
+            |space| &space.nodes,
+            Reader::nodes_called,
+            Reader::nodes_of,
+        ));
         let set = self.spaces[space].node_set(name);
         set.members.extend(members);
         set.unsorted |= found.block.has("UNSORTED");
@@ -45,23 +40,38 @@ impl Reader {
             return;
         };
         let of = self.space_of(space, found);
-        let mut members = Vec::new();
-        for row in found.rows() {
-            if found.block.has("GENERATE") {
-                members.extend(self.range(&row, of, "ELSET", |space| &space.elements));
-                continue;
-            }
-            for cell in row.cells.iter().filter(|cell| !cell.is_empty()) {
-                if cell.parse::<u64>().is_ok() && self.items_called(of, cell).is_none() {
-                    self.missing("ELSET", row.place);
-                    continue;
-                }
-                members.extend(self.items_of(of, cell, row.place).unwrap_or_default());
-            }
-        }
+        let members =
+            self.listed(found, of, "ELSET", |space| &space.elements, Reader::items_called, Reader::items_of);
         let set = self.spaces[space].element_set(name);
         set.items.extend(members);
         set.internal |= found.block.has("INTERNAL");
+    }
+
+    /// The members that the lines of a set name: ranges, or numbers and names, of which numbers of what is not there are noted.
+    fn listed<T: Copy>(
+        &mut self,
+        found: Found<'_>,
+        of: usize,
+        keyword: &str,
+        numbered: fn(&Space) -> &BTreeMap<u64, T>,
+        called: fn(&Reader, usize, &str) -> Option<Vec<T>>,
+        named: fn(&mut Reader, usize, &str, Place) -> Option<Vec<T>>,
+    ) -> Vec<T> {
+        let mut members = Vec::new();
+        for row in found.rows() {
+            if found.block.has("GENERATE") {
+                members.extend(self.range(&row, of, keyword, numbered));
+                continue;
+            }
+            for cell in row.cells.iter().filter(|cell| !cell.is_empty()) {
+                if cell.parse::<u64>().is_ok() && called(self, of, cell).is_none() {
+                    self.missing(keyword, row.place);
+                } else {
+                    members.extend(named(self, of, cell, row.place).unwrap_or_default());
+                }
+            }
+        }
+        members
     }
 
     /// The space that a set's numbers are of: its own, or that of INSTANCE.

@@ -4,9 +4,10 @@ use super::blocks;
 use super::collapsed::side_of_brick;
 use super::reader::{Found, Reader};
 use super::space::Item;
-use crate::deck::{Element, Place, ShellFace, Surface};
+use crate::deck::{Place, ShellFace, Surface};
 use crate::ledger::Weight;
-use stridor_mesh::{Cell, Mesh, Program};
+use crate::skin::outer_faces;
+use stridor_mesh::Program;
 
 impl Reader {
     /// *SURFACE: sets or numbers of elements, with the number of a face, or of nodes.
@@ -93,7 +94,10 @@ impl Reader {
             .collect();
         let face = blocks::unquoted(face).to_uppercase();
         if face.is_empty() {
-            let outer = self.outer.get_or_insert_with(|| outer_faces(&self.deck.elements));
+            let outer = self.outer.get_or_insert_with(|| {
+                let elements = &self.deck.elements;
+                outer_faces(elements, 0..elements.len())
+            });
             for index in &shapes {
                 let from = outer.partition_point(|(element, _)| element < index);
                 surface.faces.extend(outer[from..].iter().take_while(|(element, _)| element == index));
@@ -143,15 +147,4 @@ impl Reader {
         let form = element.kind.named(Program::Abaqus).first()?;
         form.sides.iter().position(|side| *side == number)
     }
-}
-
-/// The faces that one solid alone has.
-fn outer_faces(elements: &[Element]) -> Vec<(usize, usize)> {
-    let solids: Vec<usize> = (0..elements.len()).filter(|k| elements[*k].kind.dimension() == 3).collect();
-    let cell = |index: &usize| Cell::new(elements[*index].kind, &elements[*index].nodes);
-    let mesh = Mesh { elements: solids.iter().filter_map(cell).collect(), ..Mesh::default() };
-    let skin = mesh.skin(0..mesh.elements.len()).into_iter();
-    let mut faces: Vec<_> = skin.map(|side| (solids[side.cell], side.side)).collect();
-    faces.sort_unstable();
-    faces
 }

@@ -1,30 +1,15 @@
 //! Supports, rigid bodies, ties, masses, springs and loads of the case.
 
-use super::converter::Converter;
+use super::converter::{Converter, NodeUse};
 use super::text::{numbers, quantity, quoted, strings};
 use crate::deck::{CouplingKind, Frame, LoadOn, Support};
 use crate::ledger::Weight;
-use stridor_mesh::CellKind;
 
 const DISPLACEMENTS: [&str; 3] = ["ux", "uy", "uz"];
 const ROTATIONS: [&str; 3] = ["rx", "ry", "rz"];
 const ABOUT_AXIS: [&str; 3] = ["radial", "tangential", "axial"];
 
 impl Converter<'_> {
-    /// Whether some of the nodes are of shells or beams, which have rotations.
-    fn rotate(&self, nodes: &[usize]) -> bool {
-        let of_nodes: std::collections::HashSet<usize> = nodes.iter().copied().collect();
-        let masters = self.deck.couplings.iter().map(|coupling| coupling.reference);
-        let turning = self.deck.elements.iter().enumerate().filter(|(index, element)| {
-            self.regions.has(*index) && (1..=2).contains(&element.kind.dimension())
-        });
-        turning
-            .flat_map(|(_, element)| &element.nodes)
-            .copied()
-            .chain(masters)
-            .any(|node| of_nodes.contains(&node))
-    }
-
     /// `[support.NAME]`: lines of single nodes that hold the same are one.
     pub fn supports(&mut self) {
         let mut joined: Vec<Support> = Vec::new();
@@ -53,7 +38,7 @@ impl Converter<'_> {
         if used.is_empty() {
             return;
         }
-        let rotates = self.rotate(&used);
+        let rotates = used.iter().any(|node| self.uses[*node].rotates);
         let [displacements, rotations] = [[held[0], held[1], held[2]], [held[3], held[4], held[5]]];
         let rotations = if rotates { rotations } else { [false; 3] };
         let names = |of: [&'static str; 3], held: [bool; 3]| {
@@ -109,22 +94,28 @@ impl Converter<'_> {
     }
 
     /// Those of some nodes that elements of the mesh or couplings use.
-    fn nodes_in_use(&mut self, nodes: &[usize]) -> Vec<usize> {
-        if self.in_use.is_empty() {
-            self.in_use = vec![false; self.deck.nodes.len()];
-            for (index, element) in self.deck.elements.iter().enumerate() {
-                if self.regions.has(index) {
-                    element.nodes.iter().for_each(|node| self.in_use[*node] = true);
-                }
-            }
-            for coupling in &self.deck.couplings {
-                self.in_use[coupling.reference] = true;
-            }
-            for spring in &self.deck.springs {
-                spring.ends.iter().filter_map(|(_, to)| *to).for_each(|node| self.in_use[node] = true);
+    fn nodes_in_use(&self, nodes: &[usize]) -> Vec<usize> {
+        nodes.iter().copied().filter(|node| self.uses[*node].moves).collect()
+    }
+
+    /// Finds what each node is used for, once the parts are there.
+    pub fn find_uses(&mut self) {
+        self.uses = vec![NodeUse::default(); self.deck.nodes.len()];
+        for (_, element) in
+            self.deck.elements.iter().enumerate().filter(|(index, _)| self.regions.has(*index))
+        {
+            let rotates = (1..=2).contains(&element.kind.dimension());
+            for node in &element.nodes {
+                self.uses[*node].moves = true;
+                self.uses[*node].rotates |= rotates;
             }
         }
-        nodes.iter().copied().filter(|node| self.in_use[*node]).collect()
+        for coupling in &self.deck.couplings {
+            self.uses[coupling.reference] = NodeUse { moves: true, rotates: true };
+        }
+        for spring in &self.deck.springs {
+            spring.ends.iter().filter_map(|(_, to)| *to).for_each(|node| self.uses[node].moves = true);
+        }
     }
 
     /// `[rigid.NAME]`, `[averaging.NAME]`, `[tie.NAME]`.
@@ -299,39 +290,6 @@ impl Converter<'_> {
                 }
             }
         }
-    }
-
-    /// E/h of the first element of a surface \[force/length³\].
-    pub fn side_stiffness(&self, surface: &str) -> Option<f64> {
-        let surface = self.deck.surface(surface)?;
-        let owner = surface
-            .faces
-            .first()
-            .map(|(element, _)| *element)
-            .or_else(|| surface.shells.first().map(|(element, _)| *element));
-        let element = owner.or_else(|| {
-            let node = surface.nodes.first()?;
-            self.deck
-                .elements
-                .iter()
-                .position(|element| element.kind != CellKind::Point1 && element.nodes.contains(node))
-        })?;
-        let part = self.parts.iter().find(|part| part.elements.binary_search(&element).is_ok())?;
-        let material = &self.deck.sections[part.section].material;
-        let material = self.deck.materials.iter().find(|known| known.name.eq_ignore_ascii_case(material))?;
-        let modulus = match material.elastic? {
-            crate::deck::Elastic::Isotropic { youngs_modulus, .. } => youngs_modulus,
-            crate::deck::Elastic::Orthotropic { youngs_moduli, .. } => youngs_moduli[0],
-        };
-        let corners = &self.deck.elements[element].nodes[..self.deck.elements[element].kind.n_corners()];
-        let low: [f64; 3] = std::array::from_fn(|i| {
-            corners.iter().map(|n| self.deck.nodes[*n].position[i]).fold(f64::INFINITY, f64::min)
-        });
-        let high: [f64; 3] = std::array::from_fn(|i| {
-            corners.iter().map(|n| self.deck.nodes[*n].position[i]).fold(f64::NEG_INFINITY, f64::max)
-        });
-        let size = (0..3).map(|i| (high[i] - low[i]).powi(2)).sum::<f64>().sqrt();
-        (size > 0.0).then(|| modulus / size)
     }
 }
 

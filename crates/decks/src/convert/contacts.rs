@@ -5,17 +5,33 @@ use super::text::{number, numbers, quantity, quoted, strings};
 use crate::deck::{Contact, Motion};
 use crate::ledger::Weight;
 use std::collections::HashSet;
+use stridor_mesh::CellKind;
 
 /// k_n h/E of a contact that the file calls hard: stiff beside the elements below it.
 const HARD: f64 = 10.0;
 
 impl Converter<'_> {
+    /// `[contact.NAME]`, and `[rotation.NAME]` of what else turns.
+    pub fn contacts(&mut self) {
+        let rotations: Vec<Option<Motion>> =
+            self.deck.contacts.iter().map(|contact| self.rotation_of(contact)).collect();
+        for (k, (contact, rotation)) in self.deck.contacts.iter().zip(&rotations).enumerate() {
+            let body = self.regions.surface(&contact.slave, &mut self.ledger);
+            let counter = self.regions.surface(&contact.master, &mut self.ledger);
+            let (Some(body), Some(counter)) = (body, counter) else {
+                let why = "a contact of surfaces that have no sides is not in the case";
+                self.ledger.note(Weight::Matters, "contacts", why, contact.place);
+                continue;
+            };
+            self.contact(k, contact, rotation.as_ref(), [&body, &counter]);
+        }
+        self.rotations(&rotations);
+    }
+
     /// `[rotation.NAME]`: parts that turn where no contact slides on them.
-    pub fn rotations(&mut self) {
-        let of_contacts: Vec<Motion> =
-            self.deck.contacts.iter().filter_map(|contact| self.rotation_of(contact)).collect();
+    fn rotations(&mut self, of_contacts: &[Option<Motion>]) {
         for motion in self.deck.motions.iter().filter(|motion| motion.speed != 0.0) {
-            if of_contacts.iter().any(|other| other.set == motion.set) {
+            if of_contacts.iter().flatten().any(|other| other.set == motion.set) {
                 continue;
             }
             let nodes: HashSet<usize> = self
@@ -43,24 +59,15 @@ impl Converter<'_> {
         }
     }
 
-    /// `[contact.NAME]`.
-    pub fn contacts(&mut self) {
-        for (k, contact) in self.deck.contacts.iter().enumerate() {
-            let body = self.regions.surface(&contact.slave, &mut self.ledger);
-            let counter = self.regions.surface(&contact.master, &mut self.ledger);
-            let (Some(body), Some(counter)) = (body, counter) else {
-                let why = "a contact of surfaces that have no sides is not in the case";
-                self.ledger.note(Weight::Matters, "contacts", why, contact.place);
-                continue;
-            };
-            self.contact(k, contact, &body, &counter);
-        }
-    }
-
-    fn contact(&mut self, k: usize, contact: &Contact, body: &str, counter: &str) {
+    fn contact(
+        &mut self,
+        k: usize,
+        contact: &Contact,
+        rotation: Option<&Motion>,
+        [body, counter]: [&str; 2],
+    ) {
         let units = self.units;
         let name = if contact.slave.is_empty() { format!("contact_{}", k + 1) } else { body.to_string() };
-        let rotation = self.rotation_of(contact);
         let per_area = units.stress() / units.length;
         let (stiffness, chosen) = match contact.stiffness {
             Some(stiffness) => (stiffness * per_area, false),
@@ -92,7 +99,7 @@ impl Converter<'_> {
                 let point = point.map(|x| x * units.length);
                 let value = format!(
                     "{{ axis = {}, point = {}, speed = {} }}",
-                    numbers(axis),
+                    numbers(*axis),
                     numbers(point),
                     quantity(speed / units.time, 1.0, "rad/s")
                 );
@@ -141,6 +148,39 @@ impl Converter<'_> {
             let motion = moving.clone().find(|motion| turns(motion, &body))?.clone();
             Some(Motion { speed: -motion.speed, ..motion })
         })
+    }
+
+    /// E/h of the first element of a surface \[force/length³\].
+    fn side_stiffness(&self, surface: &str) -> Option<f64> {
+        let surface = self.deck.surface(surface)?;
+        let owner = surface
+            .faces
+            .first()
+            .map(|(element, _)| *element)
+            .or_else(|| surface.shells.first().map(|(element, _)| *element));
+        let element = owner.or_else(|| {
+            let node = surface.nodes.first()?;
+            self.deck
+                .elements
+                .iter()
+                .position(|element| element.kind != CellKind::Point1 && element.nodes.contains(node))
+        })?;
+        let part = self.parts.iter().find(|part| part.elements.binary_search(&element).is_ok())?;
+        let material = &self.deck.sections[part.section].material;
+        let material = self.deck.material(material)?;
+        let modulus = match material.elastic? {
+            crate::deck::Elastic::Isotropic { youngs_modulus, .. } => youngs_modulus,
+            crate::deck::Elastic::Orthotropic { youngs_moduli, .. } => youngs_moduli[0],
+        };
+        let corners = &self.deck.elements[element].nodes[..self.deck.elements[element].kind.n_corners()];
+        let low: [f64; 3] = std::array::from_fn(|i| {
+            corners.iter().map(|n| self.deck.nodes[*n].position[i]).fold(f64::INFINITY, f64::min)
+        });
+        let high: [f64; 3] = std::array::from_fn(|i| {
+            corners.iter().map(|n| self.deck.nodes[*n].position[i]).fold(f64::NEG_INFINITY, f64::max)
+        });
+        let size = (0..3).map(|i| (high[i] - low[i]).powi(2)).sum::<f64>().sqrt();
+        (size > 0.0).then(|| modulus / size)
     }
 }
 

@@ -17,11 +17,20 @@ pub(super) struct Converter<'a> {
     pub ledger: Ledger,
     pub parts: Vec<Part>,
     pub names: TableNames,
-    /// Whether elements, couplings or springs use a node; empty before it is asked.
-    pub in_use: Vec<bool>,
+    /// What each node is used for.
+    pub uses: Vec<NodeUse>,
     pub axes_of_materials: HashMap<String, [[f64; 3]; 2]>,
     pub warnings: Vec<String>,
     pub faults: Faults,
+}
+
+/// What a node is used for.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct NodeUse {
+    /// Elements of the mesh, couplings or springs have it.
+    pub moves: bool,
+    /// Shells or beams have it, or nodes follow it.
+    pub rotates: bool,
 }
 
 /// A part of the case.

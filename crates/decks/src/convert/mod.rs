@@ -54,7 +54,7 @@ pub fn convert(deck: &Deck, units: Units) -> Result<Converted> {
         ledger: deck.ledger.clone(),
         parts: Vec::new(),
         names: TableNames::default(),
-        in_use: Vec::new(),
+        uses: Vec::new(),
         axes_of_materials: HashMap::new(),
         warnings: Vec::new(),
         faults: Faults::new(),
@@ -75,6 +75,7 @@ pub fn convert(deck: &Deck, units: Units) -> Result<Converted> {
         ));
     }
     std::mem::take(&mut converter.faults).into_result(())?;
+    converter.find_uses();
     converter.sets();
     converter.supports();
     converter.joints();
@@ -82,7 +83,6 @@ pub fn convert(deck: &Deck, units: Units) -> Result<Converted> {
     converter.springs();
     converter.loads();
     converter.contacts();
-    converter.rotations();
     converter.equations();
     converter.analyses();
     let (page, mass) = converter.page();

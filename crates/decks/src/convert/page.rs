@@ -2,10 +2,10 @@
 
 use super::converter::Converter;
 use crate::deck::SectionShape;
+use std::collections::BTreeMap;
 use std::fmt::Write;
 use stridor_base::numbers::{given, significant};
-use stridor_mesh::Cell;
-use stridor_mesh::quality::{cross, dot, norm};
+use stridor_mesh::{Cell, CellKind, QuadraturePoint};
 
 /// Mass, volume and first moment of a part.
 #[derive(Debug, Clone, Copy, Default)]
@@ -109,8 +109,7 @@ impl Converter<'_> {
     /// ∫ρ dV, ∫dV and ∫ρ x dV of a section's elements in SI units, and its extent.
     fn mass_of(&self, section: usize, elements: &[usize]) -> (MassOf, [[f64; 3]; 2]) {
         let section = &self.deck.sections[section];
-        let material =
-            self.deck.materials.iter().find(|material| material.name.eq_ignore_ascii_case(&section.material));
+        let material = self.deck.material(&section.material);
         let density = material.and_then(|material| material.density).unwrap_or(0.0) * self.units.density();
         let length = self.units.length;
         let across = match section.shape {
@@ -121,6 +120,7 @@ impl Converter<'_> {
         };
         let nodes = &self.regions.mesh.nodes;
         let mut sum = MassOf::default();
+        let mut quadratures: BTreeMap<CellKind, Vec<QuadraturePoint>> = BTreeMap::new();
         let mut extent = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
         for element in elements {
             let element = &self.deck.elements[*element];
@@ -131,14 +131,9 @@ impl Converter<'_> {
                     extent[1][k] = extent[1][k].max(nodes[*node][k]);
                 }
             }
-            for point in element.kind.quadrature(5) {
-                let [a, b, c] = cell.tangents(nodes, point.at);
-                let size = match element.kind.dimension() {
-                    3 => dot(cross(a, b), c),
-                    2 => norm(cross(a, b)),
-                    _ => norm(a),
-                };
-                let volume = point.weight * size * across;
+            let quadrature = quadratures.entry(element.kind).or_insert_with(|| element.kind.quadrature(5));
+            for point in quadrature.iter() {
+                let volume = point.weight * cell.scale(nodes, point.at) * across;
                 let at = cell.position(nodes, point.at);
                 sum.volume += volume;
                 sum.mass += density * volume;

@@ -5,12 +5,9 @@ use super::text::{number, numbers, quantity, quoted};
 use super::units::{Units, plausible};
 use crate::deck::{Elastic, Material, Profile, Section, SectionShape};
 use crate::ledger::Weight;
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::{BTreeMap, HashSet};
 use stridor_base::connected::lowest_connected;
-use stridor_mesh::CellKind;
-
-/// Nodes closer than this share of the diagonal of a part are at one place.
-const COINCIDENT: f64 = 1e-6;
+use stridor_mesh::{CellKind, coincident};
 
 impl Converter<'_> {
     /// All materials that sections have.
@@ -151,48 +148,25 @@ impl Converter<'_> {
     pub fn pieces(&self, elements: &[usize]) -> Vec<Vec<usize>> {
         let deck = self.deck;
         let nodes_of = |element: &usize| deck.elements[*element].nodes.as_slice();
-        let lowest = lowest_connected(deck.nodes.len(), elements.iter().map(nodes_of));
-        let mut pieces: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-        for element in elements {
-            pieces.entry(lowest[deck.elements[*element].nodes[0]]).or_default().push(*element);
-        }
-        if pieces.len() == 1 {
-            return vec![elements.to_vec()];
-        }
         let mut nodes: Vec<usize> = elements.iter().flat_map(nodes_of).copied().collect();
         nodes.sort_unstable();
         nodes.dedup();
-        // As near as the check of meshes calls one place.
-        let bounds = |k: usize| {
-            let all = nodes.iter().map(|node| deck.nodes[*node].position[k]);
-            all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
-        };
-        let size = (0..3).map(bounds).map(|[low, high]| (high - low).powi(2)).sum::<f64>().sqrt();
-        let near = (COINCIDENT * size).max(f64::MIN_POSITIVE);
-        let cell = |node: usize| deck.nodes[node].position.map(|x| (x / near).floor() as i64);
-        let mut in_cell: HashMap<[i64; 3], Vec<usize>> = HashMap::new();
-        nodes.iter().for_each(|node| in_cell.entry(cell(*node)).or_default().push(*node));
-        let beside = |at: [i64; 3]| {
-            (0..27).map(move |k: i64| [at[0] + k % 3 - 1, at[1] + k / 3 % 3 - 1, at[2] + k / 9 - 1])
-        };
-        let meets = |node: &usize| {
-            let others = beside(cell(*node)).filter_map(|at| in_cell.get(&at)).flatten();
-            others.into_iter().any(|other| {
-                let apart: f64 = (0..3)
-                    .map(|k| (deck.nodes[*node].position[k] - deck.nodes[*other].position[k]).powi(2))
-                    .sum();
-                lowest[*node] != lowest[*other] && apart <= near * near
-            })
-        };
-        let touch = nodes.iter().any(meets);
-        if touch { pieces.into_values().collect() } else { vec![elements.to_vec()] }
+        let own = |node: &usize| nodes.partition_point(|other| other < node);
+        let groups = elements.iter().map(|element| nodes_of(element).iter().map(own).collect::<Vec<_>>());
+        let lowest = lowest_connected(nodes.len(), groups);
+        let mut pieces: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        for element in elements {
+            pieces.entry(lowest[own(&nodes_of(element)[0])]).or_default().push(*element);
+        }
+        let places: Vec<[f64; 3]> = nodes.iter().map(|node| deck.nodes[*node].position).collect();
+        let touch = || coincident(&places).iter().any(|[a, b]| lowest[*a] != lowest[*b]);
+        if pieces.len() > 1 && touch() { pieces.into_values().collect() } else { vec![elements.to_vec()] }
     }
 
     fn part(&mut self, index: usize, name: &str, reduced: bool, elements: Vec<usize>) {
         let deck = self.deck;
         let section: &Section = &deck.sections[index];
-        let material =
-            deck.materials.iter().find(|material| material.name.eq_ignore_ascii_case(&section.material));
+        let material = deck.material(&section.material);
         let Some(material) = material else {
             let found = format!("material `{}` of section `{}`", section.material, section.name);
             self.fault(section.place, found, "the name of a material of the file");

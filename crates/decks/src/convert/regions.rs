@@ -2,6 +2,7 @@
 
 use crate::deck::{Deck, Element};
 use crate::ledger::{Ledger, Weight};
+use crate::skin::outer_faces;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use stridor_mesh::{Cell, Mesh, Region};
 
@@ -178,17 +179,14 @@ impl<'a> Regions<'a> {
     /// Outer sides of the solids of the mesh, all of whose nodes are among some.
     fn sides_within(&self, nodes: &[usize]) -> Vec<(usize, usize)> {
         let within: HashSet<usize> = nodes.iter().copied().collect();
-        let solids: Vec<usize> = (0..self.deck.elements.len())
-            .filter(|index| self.has(*index) && self.deck.elements[*index].kind.dimension() == 3)
-            .collect();
-        let cell =
-            |index: &usize| Cell::new(self.deck.elements[*index].kind, &self.deck.elements[*index].nodes);
-        let touching = Mesh { elements: solids.iter().filter_map(cell).collect(), ..Mesh::default() };
-        let skin = touching.skin(0..touching.elements.len());
-        let inside = skin
-            .into_iter()
-            .filter(|side| touching.side(*side).nodes().iter().all(|node| within.contains(node)));
-        inside.map(|side| (solids[side.cell], side.side)).collect()
+        let elements = &self.deck.elements;
+        let mut outer = outer_faces(elements, (0..elements.len()).filter(|index| self.has(*index)));
+        outer.retain(|(index, side)| {
+            let element = &elements[*index];
+            let (_, of_side) = element.kind.table().sides[*side];
+            of_side.iter().all(|node| within.contains(&element.nodes[usize::from(*node)]))
+        });
+        outer
     }
 
     /// The name of a region as a node set of the deck has it, if one has just these nodes.

@@ -1,6 +1,7 @@
 //! Systems of units, of which no file states its own.
 
 use stridor_base::error::{Error, Fault, Result, nearest};
+use stridor_base::solids::{DENSITY, MODULUS, SPEED};
 
 /// A system of units: the SI value of its units.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -88,8 +89,7 @@ impl Units {
         self.mass / self.length.powi(3)
     }
 
-    /// The other systems in which a density and a modulus of elasticity are those of a solid material: 10 kg/m³ to 2.3·10⁴ kg/m³, 10⁵ Pa
-    /// to 1.3·10¹² Pa, waves of 10 m/s to 2·10⁴ m/s (M. F. Ashby, *Materials Selection in Mechanical Design*).
+    /// The systems in which a density and a modulus of elasticity are those of a solid material.
     pub fn likelier(density: f64, modulus: f64) -> impl Iterator<Item = &'static Units> {
         SYSTEMS.iter().filter(move |units| plausible(density * units.density(), modulus * units.stress()))
     }
@@ -97,6 +97,5 @@ impl Units {
 
 /// Whether a density \[kg/m³\] and a modulus \[Pa\] are those of a solid.
 pub(super) fn plausible(density: f64, modulus: f64) -> bool {
-    let speed = (modulus / density).sqrt();
-    (10.0..=2.3e4).contains(&density) && (1e5..=1.3e12).contains(&modulus) && (10.0..=2e4).contains(&speed)
+    DENSITY.contains(&density) && MODULUS.contains(&modulus) && SPEED.contains(&(modulus / density).sqrt())
 }

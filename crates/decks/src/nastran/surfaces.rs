@@ -8,6 +8,7 @@ use super::model::Model;
 use super::names::Named;
 use crate::deck::{Place, Set, ShellFace, Surface};
 use crate::ledger::Weight;
+use crate::skin::outer_faces;
 use std::collections::BTreeMap;
 
 /// Surfaces by number: the card, and what they have.
@@ -207,7 +208,7 @@ fn surface(
     let dimension = |element: &usize| model.deck.elements[*element].kind.dimension();
     surface.shells.extend(whole.iter().filter(|e| dimension(e) == 2).map(|e| (*e, ShellFace::Positive)));
     whole.retain(|element| dimension(element) == 3);
-    surface.faces.extend(outer_faces(&whole, model));
+    surface.faces.extend(outer_faces(&model.deck.elements, whole));
     surface.faces.sort_unstable();
     surface.faces.dedup();
     surface.shells.sort_unstable();
@@ -231,29 +232,4 @@ fn side_of_three(element: usize, corners: &[u64; 3], model: &Model) -> Option<us
     sides.position(|(kind, nodes)| {
         corners.iter().all(|corner| nodes[..kind.n_corners()].iter().any(|node| number(node) == *corner))
     })
-}
-
-/// Sides of solids that are of one of them only.
-fn outer_faces(solids: &[usize], model: &Model) -> Vec<(usize, usize)> {
-    let mut sides: Vec<([usize; 4], (usize, usize))> = Vec::new();
-    for at in solids {
-        let element = &model.deck.elements[*at];
-        for (side, (kind, nodes)) in element.kind.table().sides.iter().enumerate() {
-            let mut corners = [usize::MAX; 4];
-            for (corner, node) in corners.iter_mut().zip(&nodes[..kind.n_corners()]) {
-                *corner = element.nodes[usize::from(*node)];
-            }
-            corners.sort_unstable();
-            sides.push((corners, (*at, side)));
-        }
-    }
-    sides.sort_unstable();
-    let mut outer = Vec::new();
-    for same in sides.chunk_by(|a, b| a.0 == b.0) {
-        if let [(_, side)] = same {
-            outer.push(*side);
-        }
-    }
-    outer.sort_unstable();
-    outer
 }
