@@ -1,7 +1,6 @@
 //! A cell: its kind and its nodes.
 
 use super::CellKind;
-use super::quality::{cross, dot, norm};
 
 /// One cell; its nodes index [`super::Mesh::nodes`], in the order of [`CellKind`].
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
@@ -115,17 +114,6 @@ impl Cell {
             }
         }
         tangents
-    }
-
-    /// dl, dA or dV at reference coordinates, of nodes with the given coordinates, for one of the reference cell; of a solid that is turned inside
-    /// out it is negative.
-    pub fn scale(&self, nodes: &[[f64; 3]], at: [f64; 3]) -> f64 {
-        let [a, b, c] = self.tangents(nodes, at);
-        match self.dimension() {
-            3 => dot(cross(a, b), c),
-            2 => norm(cross(a, b)),
-            _ => norm(a),
-        }
     }
 
     /// Its nodes in the order of VTK files.

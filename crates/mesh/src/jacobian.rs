@@ -1,10 +1,23 @@
-//! Cells that are turned inside out: the sign of the Jacobian at every node.
+//! The Jacobian of a cell: lengths, areas and volumes, and cells that are turned inside out.
 
-use super::quality::{cross, dot};
+use super::quality::{cross, dot, norm};
 use super::{Cell, CellShape, Mesh, QuadraturePoint};
 
 /// How near to its apex a pyramid is looked at, as a share of the way from its centre: there the Jacobian has no value.
 const NEAR_APEX: f64 = 0.9;
+
+impl Cell {
+    /// dl, dA or dV at reference coordinates, of nodes with the given coordinates, for one of the reference cell; of a solid that is turned inside
+    /// out it is negative.
+    pub fn scale(&self, nodes: &[[f64; 3]], at: [f64; 3]) -> f64 {
+        let [a, b, c] = self.tangents(nodes, at);
+        match self.dimension() {
+            3 => dot(cross(a, b), c),
+            2 => norm(cross(a, b)),
+            _ => norm(a),
+        }
+    }
+}
 
 /// Whether the map x(ξ) = Σ N_k(ξ) x_k keeps one orientation: det ∂x/∂ξ > 0 at the nodes of a solid; on faces and lines of second order the
 /// normal or tangent there is on the side of that in the middle. First-order faces and lines are left to [`super::quality`].
