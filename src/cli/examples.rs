@@ -28,7 +28,8 @@ Examples:
 pub const EXPORT: &str = "\
 Examples:
   stridor export rig/case.toml --out matrices
-  stridor export rig/case.toml --linearised --out matrices";
+  stridor export rig/case.toml --linearised --out matrices
+  stridor export brake/case.toml --out brake.inp     A model of Abaqus and CalculiX; .bdf: of NASTRAN";
 
 pub const IMPORT: &str = "\
 Examples:

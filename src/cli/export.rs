@@ -1,18 +1,22 @@
-//! `stridor export`: a case as matrices, for other programs and for tests.
+//! `stridor export`: a case as matrices, or as a model of another program.
 
-use super::output::{Common, SUCCESS, say};
-use crate::case::read_case;
-use crate::error::Result;
-use crate::job::{ContactAs, export};
+use super::output::{Common, SUCCESS, give, say};
+use crate::case::{Case, read_case};
+use crate::decks::{self, Format, Weight};
+use crate::error::{Error, Fault, Result};
+use crate::job::{ContactAs, Prepared, deck, export};
+use crate::results::write_atomically;
 use clap::Args;
-use std::path::PathBuf;
+use serde_json::json;
+use std::path::{Path, PathBuf};
 
 #[derive(Args)]
 pub struct ExportOptions {
     /// The case file (TOML)
     case: PathBuf,
-    /// The folder for mass.mtx, stiffness.mtx, damping.mtx, dofs.csv, contact points and a case that takes them
-    #[arg(long, value_name = "DIR")]
+    /// The folder for mass.mtx, stiffness.mtx, damping.mtx, dofs.csv, contact points and a case that takes them; or a file for the model:
+    /// .inp of Abaqus and CalculiX, .bdf of NASTRAN
+    #[arg(long, value_name = "PATH")]
     out: PathBuf,
     /// The contacts as terms of C and K, linearised at steady sliding: the matrices of small motions
     #[arg(long)]
@@ -20,13 +24,57 @@ pub struct ExportOptions {
 }
 
 pub fn run(options: &ExportOptions, common: &Common) -> Result<u8> {
+    let case = read_case(&options.case)?;
+    let out = &options.out;
+    match Format::of_path(out).ok().filter(|format| format.is_written() && !out.is_dir()) {
+        Some(format) if !options.linearised => model(&case, format, out, common),
+        Some(_) => {
+            let help = "Leave --linearised out, or give --out the name of a folder";
+            let fault =
+                Fault::new("--linearised", "a model of another program", "matrices, which have no laws");
+            Err(Error::input(fault.with_help(help)))
+        }
+        None => matrices(&case, options, common),
+    }
+}
+
+fn matrices(case: &Case, options: &ExportOptions, common: &Common) -> Result<u8> {
     let contact = if options.linearised { ContactAs::Matrices } else { ContactAs::Points };
-    let left_out = export(&read_case(&options.case)?, contact, &options.out)?;
+    let left_out = export(case, contact, &options.out)?;
     if !common.quiet {
         for sentence in left_out {
             say(format!("warning: {sentence}."))?;
         }
         say(format!("M, C and K are in {}; case.toml there takes them.", options.out.display()))?;
+    }
+    Ok(SUCCESS)
+}
+
+fn model(case: &Case, format: Format, out: &Path, common: &Common) -> Result<u8> {
+    let prepared = Prepared::new(case)?;
+    let deck = deck(&prepared)?;
+    let Some(written) = decks::write(&deck, format) else { return Ok(SUCCESS) };
+    let folder = out.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let name = out.file_name().unwrap_or_default().to_string_lossy();
+    write_atomically(folder, &name, written.text.as_bytes())?;
+    let (nodes, elements) = (deck.nodes.len(), deck.elements.len());
+    if common.json {
+        let rows = written.left_out.rows().map(|row| {
+            json!({ "what": row.what, "why": row.why, "matters": row.weight.word(), "count": row.count })
+        });
+        let rows = rows.collect::<Vec<_>>();
+        let file = out.display().to_string();
+        give(format!(
+            "{:#}",
+            json!({ "ok": true, "file": file, "nodes": nodes, "elements": elements, "unwritten": rows })
+        ))?;
+    } else if !common.quiet {
+        for row in written.left_out.rows() {
+            let head = if row.weight == Weight::Matters { "warning: " } else { "" };
+            let times = if row.count > 1 { format!(" ({} times)", row.count) } else { String::new() };
+            say(format!("{head}{}: {}{times}.", row.what, row.why))?;
+        }
+        say(format!("{nodes} nodes and {elements} elements in {}, in m, kg, s (N, Pa).", out.display()))?;
     }
     Ok(SUCCESS)
 }

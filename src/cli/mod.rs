@@ -56,7 +56,7 @@ enum Action {
     /// Print the JSON Schema of case files, for editors, or the reference of their keys
     #[command(after_help = examples::SCHEMA)]
     Schema(schema::SchemaOptions),
-    /// Write M, C, K, the degrees of freedom and the contact points of a case, for other programs
+    /// Write M, C, K, the degrees of freedom and the contact points of a case, or its model, for other programs
     #[command(after_help = examples::EXPORT)]
     Export(export::ExportOptions),
     /// Make a case and a mesh of a model of another program

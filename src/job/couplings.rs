@@ -93,6 +93,16 @@ fn tie_of(
     Ok(Coupling { name: format!("`{place}`"), constraints: found.constraints })
 }
 
+/// The largest gap of nodes that a tie joins \[m\].
+///
+/// # Errors
+/// As of the tie itself.
+pub(super) fn largest_tied_gap(name: &str, tie: &Tie, regions: &Regions, model: &Model) -> Result<f64> {
+    let surfaces = [tie.on.as_str(), tie.to.as_str()];
+    let found = projected(&format!("tie.{name}"), surfaces, tie.within, (regions, model), &mut Vec::new())?;
+    Ok(found.0.within)
+}
+
 /// Faces of a surface that follows may be so much larger than those of the other.
 const COARSE: f64 = 1.2;
 

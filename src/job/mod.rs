@@ -5,7 +5,8 @@
 //! 3. [`run_case`] does both and writes the results folder; [`run_part`] computes a block of every study,
 //!    [`merge_parts`] makes the results folder of all blocks.
 //!
-//! A case may give M, C and K themselves instead of a mesh; [`export()`] writes any case in that form.
+//! A case may give M, C and K themselves instead of a mesh; [`export()`] writes any case in that form, and [`deck()`] makes
+//! of one with a mesh a model of another program.
 
 mod analyse;
 mod analyses;
@@ -20,6 +21,7 @@ mod contact_twice;
 mod contacts;
 mod counter;
 mod couplings;
+mod deck;
 mod discs;
 mod explore;
 mod export;
@@ -74,6 +76,7 @@ mod verify;
 pub use analyse::{CaseWarnings, analyse, check_case};
 pub use analyses::{ANALYSES, Analysis, Selection};
 pub use calibrate::Coordinate;
+pub use deck::deck;
 pub use export::{ContactAs, export};
 pub use imported::{read_points, read_rows};
 #[cfg(feature = "cli")]

@@ -78,7 +78,7 @@ impl Material {
     pub fn elasticity(&self) -> SMatrix<f64, 6, 6> {
         if let Some(orthotropic) = &self.orthotropic {
             let turned = to_axes(orthotropic.directions());
-            return turned.transpose() * self.in_axes(orthotropic).unwrap_or_default() * turned;
+            return turned.transpose() * self.in_axes().unwrap_or_default() * turned;
         }
         let (e, nu, g) = (self.youngs_modulus, self.poissons_ratio, self.shear_modulus());
         let lambda = e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu));
@@ -86,6 +86,21 @@ impl Material {
             (true, true) => lambda + if i == j { 2.0 * g } else { 0.0 },
             (false, false) if i == j => g,
             _ => 0.0,
+        })
+    }
+
+    /// The constants and directions of an orthotropic material; none of an isotropic one.
+    pub fn engineering(&self) -> Option<Engineering> {
+        let o = self.orthotropic.as_ref()?;
+        let e2 = o.youngs_modulus_2.unwrap_or(self.youngs_modulus);
+        let nu23 = o.poissons_ratio_23.unwrap_or(o.poissons_ratio_13);
+        let g12 = o.shear_modulus_12.unwrap_or_else(|| self.shear_modulus());
+        let g23 = o.shear_modulus_23.unwrap_or(o.shear_modulus_13);
+        Some(Engineering {
+            youngs_moduli: [self.youngs_modulus, e2, o.youngs_modulus_3],
+            poissons_ratios: [self.poissons_ratio, o.poissons_ratio_13, nu23],
+            shear_moduli: [g12, o.shear_modulus_13, g23],
+            directions: o.directions().map(Into::into),
         })
     }
 
@@ -97,23 +112,32 @@ impl Material {
     }
 
     /// D on (11, 22, 33, 12, 23, 31): the inverse of the compliance; none where that is not positive definite.
-    fn in_axes(&self, o: &Orthotropic) -> Option<SMatrix<f64, 6, 6>> {
-        let (e1, nu12) = (self.youngs_modulus, self.poissons_ratio);
-        let e2 = o.youngs_modulus_2.unwrap_or(e1);
-        let nu23 = o.poissons_ratio_23.unwrap_or(o.poissons_ratio_13);
-        let g12 = o.shear_modulus_12.unwrap_or_else(|| self.shear_modulus());
-        let g23 = o.shear_modulus_23.unwrap_or(o.shear_modulus_13);
+    fn in_axes(&self) -> Option<SMatrix<f64, 6, 6>> {
+        let Engineering { youngs_moduli, poissons_ratios, shear_moduli, .. } = self.engineering()?;
+        let ([e1, e2, e3], [nu12, nu13, nu23], [g12, g13, g23]) =
+            (youngs_moduli, poissons_ratios, shear_moduli);
         let mut compliance = SMatrix::<f64, 6, 6>::zeros();
-        for (k, stiffness) in
-            [e1, e2, o.youngs_modulus_3, g12, g23, o.shear_modulus_13].into_iter().enumerate()
-        {
+        for (k, stiffness) in [e1, e2, e3, g12, g23, g13].into_iter().enumerate() {
             compliance[(k, k)] = 1.0 / stiffness;
         }
-        for (i, j, value) in [(0, 1, nu12 / e1), (0, 2, o.poissons_ratio_13 / e1), (1, 2, nu23 / e2)] {
+        for (i, j, value) in [(0, 1, nu12 / e1), (0, 2, nu13 / e1), (1, 2, nu23 / e2)] {
             (compliance[(i, j)], compliance[(j, i)]) = (-value, -value);
         }
         Some(compliance.cholesky()?.inverse())
     }
+}
+
+/// Engineering constants of an orthotropic material.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Engineering {
+    /// E₁, E₂, E₃ \[Pa\].
+    pub youngs_moduli: [f64; 3],
+    /// ν₁₂, ν₁₃, ν₂₃.
+    pub poissons_ratios: [f64; 3],
+    /// G₁₂, G₁₃, G₂₃ \[Pa\].
+    pub shear_moduli: [f64; 3],
+    /// Directions 1, 2, 3.
+    pub directions: [[f64; 3]; 3],
 }
 
 impl Orthotropic {
@@ -176,7 +200,7 @@ fn check_material(material: &Material, report: &mut Report) {
         }
         None => {}
     }
-    if material.in_axes(orthotropic).is_none() {
+    if material.in_axes().is_none() {
         report.fault(
             "orthotropic",
             "constants with which some strain releases energy",

@@ -40,7 +40,7 @@ pub use constraints::{ConstraintWords, check_constraints};
 pub use dofs::{DofMap, FreeDof};
 pub use elements::waves::{thickness_error, thickness_shear_frequency};
 pub use free::{FreePart, free_parts, is_free_along, unresisted_parts};
-pub use material::{Material, Orthotropic, RayleighDamping};
+pub use material::{Engineering, Material, Orthotropic, RayleighDamping};
 pub use model::{Constraint, Coupling, InclinedSupport, Model, RigidLink, Support};
 pub use part::{Moved, Part, PartKind};
 pub use part_forms::{PartForms, PartMatrix};

@@ -2,6 +2,7 @@
 
 use crate::deck::Deck;
 use crate::text::Files;
+use crate::written::Written;
 use std::path::Path;
 use stridor_base::error::{Error, Fault, Result, nearest};
 
@@ -26,23 +27,33 @@ struct Row {
     /// Endings of its files, in small letters.
     endings: &'static [&'static str],
     read: fn(&Path, &mut Files) -> Result<Deck>,
+    /// Where it is written, too.
+    write: Option<fn(&Deck) -> Written>,
 }
 
 /// All of them.
 const FORMATS: &[Row] = &[
-    Row { format: Format::Abaqus, name: "abaqus", endings: &["inp"], read: crate::abaqus::read },
-    Row { format: Format::Ansys, name: "ansys", endings: &["cdb"], read: crate::ansys::read },
+    Row {
+        format: Format::Abaqus,
+        name: "abaqus",
+        endings: &["inp"],
+        read: crate::abaqus::read,
+        write: Some(crate::abaqus::write),
+    },
+    Row { format: Format::Ansys, name: "ansys", endings: &["cdb"], read: crate::ansys::read, write: None },
     Row {
         format: Format::Universal,
         name: "universal",
         endings: &["unv", "uff"],
         read: crate::universal::read,
+        write: None,
     },
     Row {
         format: Format::Nastran,
         name: "nastran",
         endings: &["bdf", "dat", "nas", "fem", "pch", "blk"],
         read: crate::nastran::read,
+        write: Some(crate::nastran::write),
     },
 ];
 
@@ -60,6 +71,11 @@ impl Format {
     /// All formats.
     pub fn all() -> impl Iterator<Item = Format> {
         FORMATS.iter().map(|row| row.format)
+    }
+
+    /// Whether it is written, too.
+    pub fn is_written(self) -> bool {
+        self.row().write.is_some()
     }
 
     /// The names of all.
@@ -120,6 +136,11 @@ pub fn read(path: &Path, format: Option<Format>) -> Result<Deck> {
 /// As [`read`].
 pub fn read_bytes(name: &str, bytes: &[u8], format: Format) -> Result<Deck> {
     read_with(Path::new(name), format, Files::of_bytes(bytes))
+}
+
+/// A deck as text of a format, with what that does not hold; none where the format is only read.
+pub fn write(deck: &Deck, format: Format) -> Option<Written> {
+    format.row().write.map(|write| write(deck))
 }
 
 fn read_with(path: &Path, format: Format, mut files: Files) -> Result<Deck> {

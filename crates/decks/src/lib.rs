@@ -2,6 +2,7 @@
 //!
 //! * [`read`]: reads a file by its name; [`read_bytes`] from memory.
 //! * [`Deck`]: nodes, elements, sets, materials, constraints, contacts, loads; plain data in the units of the file.
+//! * [`write`]: a deck as a file of Abaqus, CalculiX or NASTRAN.
 //! * [`convert`]: a mesh, a case and a page of what was read.
 //! * [`Ledger`]: what was read in part, or not at all, with its places.
 //!
@@ -18,6 +19,7 @@ mod place;
 mod skin;
 mod text;
 mod universal;
+mod written;
 
 pub use convert::{Converted, Units, convert};
 pub use deck::{
@@ -25,5 +27,6 @@ pub use deck::{
     Material, Motion, Node, Place, PointMass, Profile, Section, SectionShape, Set, ShellFace, Spring,
     Support, Surface, Tie,
 };
-pub use format::{Format, read, read_bytes};
+pub use format::{Format, read, read_bytes, write};
 pub use ledger::{Ledger, Unread, Weight};
+pub use written::Written;

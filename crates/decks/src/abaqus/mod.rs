@@ -27,6 +27,7 @@ mod surfaces;
 #[cfg(test)]
 mod tests;
 mod waiting;
+mod write;
 
 use crate::deck::{Deck, Place};
 use crate::ledger::Weight;
@@ -39,6 +40,7 @@ use space::Space;
 use std::collections::HashMap;
 use std::path::Path;
 use stridor_base::error::Result;
+pub(crate) use write::write;
 
 /// Reads an input file and those that it includes.
 ///

@@ -36,6 +36,7 @@ mod table;
 mod tests;
 mod turn;
 mod unread;
+mod write;
 
 use crate::deck::Deck;
 use crate::ledger::Ledger;
@@ -44,6 +45,7 @@ use notes::Notes;
 use source::Source;
 use std::path::Path;
 use stridor_base::error::Result;
+pub(crate) use write::write;
 
 /// Reads a deck.
 ///

@@ -1,0 +1,106 @@
+//! A case as a model of another program: nodes, elements, sections, sets and surfaces, what joins and holds them, contacts, loads.
+//!
+//! Numbers are in SI. What a deck cannot hold is in its ledger.
+
+mod contacts;
+mod joints;
+mod parts;
+mod regions;
+mod sides;
+
+use super::prepared::Prepared;
+use crate::case::Case;
+use crate::decks::{Analysis, Deck, Place, Weight};
+use crate::error::{Error, Fault, Result};
+use crate::mesh::CellKind;
+use crate::structure::Model;
+use sides::Sides;
+use std::collections::HashSet;
+
+/// A deck that is being made of a case.
+struct Maker<'p> {
+    prepared: &'p Prepared<'p>,
+    case: &'p Case,
+    model: &'p Model,
+    deck: Deck,
+    sides: Sides,
+}
+
+/// The deck of a case.
+///
+/// # Errors
+/// A case of matrices, which has no elements; regions that are missing.
+pub fn deck(prepared: &Prepared) -> Result<Deck> {
+    let case = prepared.case;
+    if case.matrices.is_some() {
+        let fault = Fault::new("`matrices`", "M, C and K", "a mesh with parts: matrices have no elements");
+        return Err(Error::input(
+            fault.with_help("Export them as matrices: `--out` with the name of a folder"),
+        ));
+    }
+    let deck = Deck { title: case.title.clone(), ..Deck::default() };
+    let mut maker = Maker { prepared, case, model: &prepared.model, deck, sides: Sides::default() };
+    maker.parts();
+    maker.sides = Sides::new(&maker.deck);
+    maker.regions();
+    maker.masses()?;
+    maker.springs();
+    maker.links()?;
+    maker.ties()?;
+    maker.supports()?;
+    maker.forces()?;
+    maker.contacts()?;
+    maker.rotations()?;
+    maker.analyses();
+    Ok(maker.deck)
+}
+
+impl Maker<'_> {
+    fn note(&mut self, weight: Weight, what: impl Into<String>, why: impl Into<String>) {
+        self.deck.ledger.note(weight, what, why, Place::default());
+    }
+
+    /// Whether shells or bars turn each of some nodes.
+    fn rotates(&self, nodes: &[usize]) -> bool {
+        let turning = self.model.parts.iter().filter(|part| part.kind.dimension() < 3);
+        let turning: HashSet<usize> = turning.flat_map(|part| part.nodes()).collect();
+        nodes.iter().any(|node| turning.contains(node))
+    }
+
+    fn analyses(&mut self) {
+        let case = self.case;
+        if let Some(cea) = &case.cea {
+            self.deck.analyses.push(Analysis::ComplexModes { count: cea.count, band: cea.band.map(Some) });
+        }
+        for (name, modes) in &case.modes {
+            if !modes.parts.is_empty() || !modes.clamp.is_empty() || modes.free {
+                let why = "modes of parts, or with other supports, are another model";
+                self.note(Weight::Nothing, format!("modes.{name}"), why);
+            } else if self.deck.analyses.is_empty() {
+                self.deck.analyses.push(Analysis::Modes { count: modes.count, band: [None, modes.below] });
+            }
+        }
+        if self.deck.analyses.is_empty() {
+            self.deck.analyses.push(Analysis::Modes { count: Some(10), band: [None; 2] });
+        }
+        if case.damping.modal_ratio != 0.0 || !case.damping.modal_ratios.is_empty() {
+            self.note(Weight::Perhaps, "damping", "damping of modes is not written");
+        }
+        if case.prestress {
+            let why = "the stiffness of the preload needs NLGEOM in the step of the loads";
+            self.note(Weight::Perhaps, "prestress", why);
+        }
+    }
+}
+
+/// The element of Abaqus and CalculiX that is the same as that of a solid or plate on cells of a kind; its first name where nothing else is known.
+fn type_name(kind: CellKind, reduced: bool) -> &'static str {
+    match kind {
+        CellKind::Hexahedron8 => "C3D8I",
+        CellKind::Hexahedron20 if reduced => "C3D20R",
+        CellKind::Quadrilateral4 => "S4",
+        // Euler–Bernoulli, of cubic shape.
+        CellKind::Line2 => "B33",
+        _ => kind.table().abaqus.first().and_then(|form| form.names().next()).unwrap_or("C3D20"),
+    }
+}
