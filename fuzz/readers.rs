@@ -5,10 +5,11 @@ use std::path::PathBuf;
 use stridor::case::{Case, read_test};
 use stridor::decks::{Format, read_bytes};
 use stridor::error::{Error, Fault, Result};
+use stridor::linalg::matrix_files::{self, Found};
 use stridor::results::record::{self, Entry, Saved};
 use stridor::search::SearchFile;
 use stridor::validation::Reference;
-use stridor::{job, linalg::matrix_market, measured::uff, mesh::gmsh};
+use stridor::{job, measured::uff, mesh::gmsh};
 
 /// A reader and what it may need.
 pub struct Reader {
@@ -102,7 +103,10 @@ fn mesh(bytes: &[u8]) -> Result<String> {
 }
 
 fn matrix(bytes: &[u8]) -> Result<String> {
-    let matrix = matrix_market::parse("matrix", bytes, 0)?;
+    let matrix = match matrix_files::parse("matrix", bytes, 'K', 0)? {
+        Found::Whole(matrix) => matrix,
+        Found::Labelled(matrix) => matrix.numbered(&matrix.labels().into_iter().collect::<Vec<_>>())?,
+    };
     Ok(format!("{} rows, {}", about(matrix.re.nrows()), about(matrix.re.compute_nnz())))
 }
 

@@ -7,10 +7,10 @@ use std::collections::BTreeMap;
 use toml::de::DeValue;
 
 /// Expected value of a key that names a file of a matrix.
-const FILE: &str = "the path of a MatrixMarket file";
+const FILE: &str = "the path of a file with a matrix";
 
 declare! {
-    /// M, C and K from MatrixMarket files (paths relative to the case file).
+    /// M, C and K from files (paths relative to the case file): MatrixMarket, `.mtx` of Abaqus, DMIG or OUTPUT4 of NASTRAN.
     pub struct Matrices, checked by check {
         /// M \[kg, kg m²\].
         pub mass: String = key::name(FILE),

@@ -3,14 +3,15 @@
 use super::table::{MOST_FAULTS, TextTable};
 use crate::case::{Case, Contact, ContactPoints, Matrices};
 use crate::error::{Error, Fault, Faults, Result};
-use crate::linalg::matrix_market::{self, MarketMatrix};
+use crate::linalg::matrix_files::{self, Found, Label, Labelled};
+use crate::linalg::matrix_market::MarketMatrix;
 use crate::linalg::sparse::{add_scaled, diagonal};
 use crate::linalg::{SparseMatrix, SparseVector};
 use crate::structure::{Assembled, FreeDof};
 use crate::system::{ContactPoint, Coupling, Given, hysteretic_skew, is_unsymmetric, mass_skew, split};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// The names of the six motions in the table of rows.
 const MOTIONS: [&str; 6] = ["ux", "uy", "uz", "rx", "ry", "rz"];
@@ -21,24 +22,66 @@ const ROW_COLUMNS: [&[&str]; 2] =
 const POINT_COLUMNS: [&[&str]; 2] =
     [&["normal", "t1"], &["normal", "t1", "t2", "weight", "gap", "x", "y", "z"]];
 
+/// A file and what the name of a matrix in it begins with.
+type MatrixPath = (PathBuf, char);
+
 /// Matrices that were read, by their files: cases whose factors of terms differ share them.
 #[derive(Debug, Default)]
-pub struct MatrixFiles(Mutex<BTreeMap<PathBuf, Arc<MarketMatrix>>>);
+pub struct MatrixFiles(Mutex<BTreeMap<MatrixPath, Arc<MarketMatrix>>>);
 
 impl MatrixFiles {
-    /// The matrix in a file, kept for the next one who asks where `again` says that there may be one; `columns` as in
-    /// [`matrix_market::read`].
-    fn read(&self, path: &Path, columns: usize, again: bool) -> Result<Arc<MarketMatrix>> {
-        let files = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(known) = files().get(path) {
+    fn known(&self) -> MutexGuard<'_, BTreeMap<MatrixPath, Arc<MarketMatrix>>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The matrix in a file, kept for the next one who asks where `again` says that there may be one; `columns` and `initial` as in
+    /// [`matrix_files::read`].
+    fn read(&self, path: &Path, initial: char, columns: usize, again: bool) -> Result<Arc<MarketMatrix>> {
+        let key = (path.to_path_buf(), initial);
+        if let Some(known) = self.known().get(&key) {
             return Ok(known.clone());
         }
-        let matrix = Arc::new(matrix_market::read(path, columns)?);
+        let matrix = match matrix_files::read(path, initial, columns)? {
+            Found::Whole(matrix) => matrix,
+            Found::Labelled(matrix) => matrix.numbered(&matrix.labels().into_iter().collect::<Vec<_>>())?,
+        };
+        let matrix = Arc::new(matrix);
         if again {
-            files().insert(path.into(), matrix.clone());
+            self.known().insert(key, matrix.clone());
         }
         Ok(matrix)
     }
+
+    /// Reads the matrices whose rows are of nodes: each of them has the rows of all, ascending by node and degree of freedom.
+    fn number(&self, files: &BTreeSet<MatrixPath>, faults: &mut Faults) {
+        let mut labelled: Vec<(&MatrixPath, Labelled)> = Vec::new();
+        for file in files.iter().filter(|file| !self.known().contains_key(*file)) {
+            // A file that cannot be read is a fault where it is wanted.
+            if matrix_files::is_labelled(&file.0).unwrap_or(false)
+                && let Some(Found::Labelled(matrix)) = faults.take(matrix_files::read(&file.0, file.1, 0))
+            {
+                labelled.push((file, matrix));
+            }
+        }
+        let rows: BTreeSet<Label> = labelled.iter().flat_map(|(_, matrix)| matrix.labels()).collect();
+        let rows: Vec<Label> = rows.into_iter().collect();
+        for (file, matrix) in labelled {
+            if let Some(matrix) = faults.take(matrix.numbered(&rows)) {
+                self.known().insert(file.clone(), Arc::new(matrix));
+            }
+        }
+    }
+}
+
+/// All matrices that a case names.
+fn matrix_paths(case: &Case, matrices: &Matrices) -> BTreeSet<MatrixPath> {
+    let named = [(Some(&matrices.stiffness), 'K'), (Some(&matrices.mass), 'M')];
+    let more = [(matrices.damping.as_ref(), 'B'), (matrices.load.as_ref(), 'P')];
+    let terms = matrices.term.values().flat_map(|term| {
+        [(term.mass.as_ref(), 'M'), (term.damping.as_ref(), 'B'), (term.stiffness.as_ref(), 'K')]
+    });
+    let all = named.into_iter().chain(more).chain(terms);
+    all.filter_map(|(file, initial)| Some((case.folder.join(file?), initial))).collect()
 }
 
 /// The structure of a case that gives matrices.
@@ -64,14 +107,20 @@ pub fn read_model(case: &Case, matrices: &Matrices, files: &MatrixFiles) -> Resu
     let place = |key: &str, file: &str| format!("`matrices.{key}` {}", case.folder.join(file).display());
     // Without terms nothing of the matrices varies.
     let again = !matrices.term.is_empty();
-    let mut read = |file: &str, columns| faults.take(files.read(&case.folder.join(file), columns, again));
+    files.number(&matrix_paths(case, matrices), &mut faults);
+    if !faults.0.is_empty() {
+        return faults.into_result(()).map(|()| unreachable!("there are faults"));
+    }
+    let mut read = |file: &str, initial, columns| {
+        faults.take(files.read(&case.folder.join(file), initial, columns, again))
+    };
     // K has entries in every column; the other matrices may be nearly empty.
-    let stiffness = read(&matrices.stiffness, 0);
+    let stiffness = read(&matrices.stiffness, 'K', 0);
     let columns = stiffness.as_ref().map_or(0, |k| k.re.ncols());
-    let mass = read(&matrices.mass, columns);
+    let mass = read(&matrices.mass, 'M', columns);
     let damping: Option<Option<Arc<MarketMatrix>>> =
-        matrices.damping.as_ref().map(|file| read(file, columns));
-    let load = matrices.load.as_ref().map(|file| read(file, columns).map(|f| (file, f)));
+        matrices.damping.as_ref().map(|file| read(file, 'B', columns));
+    let load = matrices.load.as_ref().map(|file| read(file, 'P', columns).map(|f| (file, f)));
     let rows = mass.as_ref().or(stiffness.as_ref()).map_or(0, |m| m.re.nrows());
     let known = rows > 0;
     let places = matrices
@@ -167,11 +216,12 @@ fn read_terms(
     let mut terms = [Vec::new(), Vec::new(), Vec::new()];
     let earlier = faults.0.len();
     for (name, term) in &matrices.term {
-        let named = [("mass", &term.mass), ("damping", &term.damping), ("stiffness", &term.stiffness)];
-        for ((key, file), terms) in named.into_iter().zip(&mut terms) {
+        let named =
+            [("mass", 'M', &term.mass), ("damping", 'B', &term.damping), ("stiffness", 'K', &term.stiffness)];
+        for ((key, initial, file), terms) in named.into_iter().zip(&mut terms) {
             let path = file.as_ref().map(|file| case.folder.join(file));
             let Some(path) = path else { continue };
-            let Some(matrix) = faults.take(files.read(&path, rows, true)) else { continue };
+            let Some(matrix) = faults.take(files.read(&path, initial, rows, true)) else { continue };
             let (m, n) = (matrix.re.nrows(), matrix.re.ncols());
             if rows > 0 && (m, n) != (rows, rows) {
                 faults.push(Fault::new(

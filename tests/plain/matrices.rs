@@ -480,3 +480,58 @@ fn an_exported_and_reread_file_of_rows_names_its_faults() {
     let message = run(folder.path(), &text).unwrap_err().to_string();
     assert!(message.contains("another place") && message.contains("dof \"3\""), "{message}");
 }
+
+/// A chain of three masses m on springs k, its first spring on the wall: ω = 2 √(k/m) sin((2j − 1) π/14), j = 1 … 3. Stiffness by nodes of
+/// Abaqus, mass by grid points of NASTRAN, damping C = βK as OUTPUT4: rows are those of the nodes, ascending.
+#[test]
+fn matrices_of_abaqus_and_nastran_are_a_chain_of_masses() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+    // Node 7 is between 12 and 5: its rows come second.
+    write(
+        "k.mtx",
+        "12,1, 12,1, 1.0e+02\n7,1, 12,1, -1.0e+02\n7,1, 7,1, 2.0e+02\n5,1, 7,1, -1.0e+02\n5,1, 5,1, 2.0e+02\n",
+    );
+    let column = |node: usize| {
+        format!(
+            "DMIG*   MAAX            {node:>16}               1\n*       {node:>16}               1 4.000000000D+00\n"
+        )
+    };
+    let cards: String = [5, 7, 12].map(column).concat();
+    write(
+        "m.pch",
+        &format!("$ punched\nDMIG    MAAX    0       6       2       0                       3\n{cards}"),
+    );
+    let value = |values: &[f64]| values.iter().map(|v| format!("{v:>16.9E}")).collect::<String>();
+    let c = [[2.0, -1.0, 0.0], [-1.0, 2.0, -1.0], [0.0, -1.0, 1.0]].map(|row| row.map(|v| 0.02 * v));
+    let records: String = (0..3).map(|k| format!("{:8}{:8}{:8}\n{}\n", k + 1, 1, 3, value(&c[k]))).collect();
+    let head = "       3       3       6       2BAA     1P,5E16.9\n";
+    write("c.op4", &format!("{head}{records}       4       1       1\n{}\n", value(&[1.0])));
+    let text =
+        "[matrices]\nmass = \"m.pch\"\nstiffness = \"k.mtx\"\ndamping = \"c.op4\"\n[cea]\nband = [0, 10]\n";
+    let case = Case::parse("chain", text, folder.path().into()).unwrap();
+    let prepared = Prepared::new(&case).unwrap_or_else(|error| panic!("{error}"));
+    let results = analyse(&prepared, Selection::Only("cea"), &mut |_| Ok(()), &()).unwrap();
+    let modes = &results.get::<ComplexResult>().unwrap().modes.modes;
+    assert_eq!(modes.len(), 3);
+    for (j, mode) in modes.iter().enumerate() {
+        let omega = 2.0 * 25.0_f64.sqrt() * ((2 * j + 1) as f64 * std::f64::consts::PI / 14.0).sin();
+        // β = 2 · 10⁻⁴ s: σ = −½ β ω².
+        let sigma = -0.5 * 2e-4 * omega * omega;
+        let wanted = c64::new(sigma, (omega * omega - sigma * sigma).sqrt());
+        let off = (mode.eigenvalue - wanted).norm() / omega;
+        assert!(within(off, 1e-11, RoundOff), "{j}: {} {wanted} {off:e}", mode.eigenvalue);
+    }
+}
+
+/// What is wrong in files of other programs, by file and line.
+#[test]
+fn faults_of_matrices_of_other_programs_have_file_and_line() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("k.mtx"), "1,1, 1,1, 1.0\n2,1, 2,1\n").unwrap();
+    std::fs::write(folder.path().join("m.mtx"), "1,1, 1,1, 1.0\n").unwrap();
+    let text = "[matrices]\nmass = \"m.mtx\"\nstiffness = \"k.mtx\"\n[modes.all]\ncount = 1\n";
+    let case = Case::parse("chain", text, folder.path().into()).unwrap();
+    let error = Prepared::new(&case).unwrap_err().to_string();
+    assert!(error.contains("k.mtx:2") && error.contains("node, degree of freedom"), "{error}");
+}

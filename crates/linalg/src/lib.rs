@@ -9,7 +9,7 @@
 //! * [`dense`]: small symmetric eigenproblems and the MAC of two vectors.
 //! * [`row_sparse`]: symmetric matrices with entries in a few rows.
 //! * [`lu`]: small dense matrices factorised.
-//! * [`matrix_market`]: matrices from and to files.
+//! * [`matrix_market`]: matrices from and to files; [`matrix_files`]: those of other programs.
 //! * [`nalgebra`]: matrices from and to nalgebra-sparse.
 //! * [`shared_pattern`]: products with several sparse matrices at once.
 //! * [`orthogonal`]: orthogonal factors of small dense matrices.
@@ -33,6 +33,7 @@ pub mod gmres;
 pub mod lanczos;
 mod lanes;
 pub mod lu;
+pub mod matrix_files;
 pub mod matrix_market;
 pub mod multivector;
 pub mod nalgebra;

@@ -16,12 +16,12 @@ use stridor_base::error::{Error, Fault, Faults, Result};
 use stridor_base::numbers;
 
 /// The most rows or columns.
-const LARGEST: usize = 1 << 26;
+pub(super) const LARGEST: usize = 1 << 26;
 /// The most columns beyond the number of entries, in a matrix whose size is not known beforehand: a column takes memory
 /// even when it is empty.
-const EMPTY: usize = 1 << 22;
+pub(super) const EMPTY: usize = 1 << 22;
 /// Faults that are told of one file; a broken file has as many as lines.
-const TOLD: usize = 8;
+pub(super) const TOLD: usize = 8;
 /// Bytes that one task parses.
 const PIECE: usize = 1 << 20;
 
@@ -72,7 +72,7 @@ pub fn one_triangle(re: &SparseMatrix, im: Option<&SparseMatrix>) -> Option<(&'s
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Symmetry {
+pub(super) enum Symmetry {
     General,
     Symmetric,
     Hermitian,
@@ -81,17 +81,17 @@ enum Symmetry {
 
 /// Header: the first line of the file.
 #[derive(Debug, Clone, Copy)]
-struct Header {
-    coordinate: bool,
-    complex: bool,
-    symmetry: Symmetry,
+pub(super) struct Header {
+    pub coordinate: bool,
+    pub complex: bool,
+    pub symmetry: Symmetry,
 }
 
 #[derive(Debug, Clone, Copy)]
-struct Entry {
-    row: u32,
-    column: u32,
-    value: c64,
+pub(super) struct Entry {
+    pub row: u32,
+    pub column: u32,
+    pub value: c64,
 }
 
 /// Reads the file at `path`. A matrix of `known` columns, the number that another file of the same system confirms (else 0),
@@ -117,7 +117,7 @@ pub fn read(path: &Path, known: usize) -> Result<MarketMatrix> {
 /// ```
 pub fn parse(name: &str, bytes: &[u8], known: usize) -> Result<MarketMatrix> {
     let bytes = &*plain(bytes);
-    let mut lines = Lines { bytes, at: 0, number: 0 };
+    let mut lines = Lines::of(bytes);
     let header = read_header(name, &mut lines)?;
     let (line, sizes) = loop {
         match lines.next() {
@@ -178,14 +178,18 @@ fn stored(symmetry: Symmetry, n: usize) -> Option<usize> {
     }
 }
 
-struct Lines<'a> {
+pub(super) struct Lines<'a> {
     bytes: &'a [u8],
     at: usize,
-    number: usize,
+    pub number: usize,
 }
 
 impl<'a> Lines<'a> {
-    fn next(&mut self) -> Option<&'a [u8]> {
+    pub fn of(bytes: &'a [u8]) -> Self {
+        Lines { bytes, at: 0, number: 0 }
+    }
+
+    pub fn next(&mut self) -> Option<&'a [u8]> {
         let rest = &self.bytes[self.at..];
         if rest.is_empty() {
             return None;
@@ -202,7 +206,7 @@ fn is_comment(line: &[u8]) -> bool {
 }
 
 /// The beginning of a line, for a fault.
-fn shown(line: &[u8]) -> String {
+pub(super) fn shown(line: &[u8]) -> String {
     let text = String::from_utf8_lossy(line);
     text.split_whitespace().collect::<Vec<_>>().join(" ").chars().take(60).collect()
 }
@@ -228,7 +232,7 @@ fn read_header(name: &str, lines: &mut Lines<'_>) -> Result<Header> {
         _ => return fault("`coordinate` or `array`", ""),
     };
     let complex = match field {
-        "real" | "integer" => false,
+        "real" | "double" | "integer" | "unsigned-integer" => false,
         "complex" => true,
         "pattern" => return fault("numbers: real, integer or complex", "A pattern has no values"),
         _ => return fault("real, integer or complex", ""),
@@ -258,7 +262,7 @@ fn whole_number(word: &[u8]) -> Option<usize> {
     word.iter().try_fold(0, |sum, b| b.is_ascii_digit().then(|| 10 * sum + usize::from(b - b'0')))
 }
 
-fn number(word: &[u8]) -> Option<f64> {
+pub(super) fn number(word: &[u8]) -> Option<f64> {
     std::str::from_utf8(word).ok().and_then(numbers::parse)
 }
 
@@ -315,7 +319,7 @@ fn read_entries(
 /// The entries of whole lines, their faults, and the number of lines.
 fn parse_piece(piece: &[u8], header: Header, size: [usize; 2]) -> (Vec<Entry>, Vec<LineFault>, usize) {
     let (mut entries, mut faults) = (Vec::with_capacity(piece.len() / 16), Vec::new());
-    let mut lines = Lines { bytes: piece, at: 0, number: 0 };
+    let mut lines = Lines::of(piece);
     while let Some(line) = lines.next() {
         if is_comment(line) {
             continue;
@@ -393,7 +397,7 @@ fn place_array(entries: &mut [Entry], symmetry: Symmetry, rows: usize) {
 }
 
 /// Compressed columns of the whole matrix; entries of one place are added in the order of the file.
-fn compress(entries: &[Entry], header: Header, rows: usize, columns: usize) -> MarketMatrix {
+pub(super) fn compress(entries: &[Entry], header: Header, rows: usize, columns: usize) -> MarketMatrix {
     let mirrored = |e: &Entry| header.symmetry != Symmetry::General && e.row != e.column;
     let mut starts = vec![0usize; columns + 1];
     for e in entries {

@@ -1,0 +1,86 @@
+//! Matrices as programs write them: a row of the table a format, which is known by how a file begins.
+//!
+//! | format | rows | numbers |
+//! |---|---|---|
+//! | MatrixMarket ([`super::matrix_market`]) | by number | real, complex |
+//! | Abaqus, \*MATRIX GENERATE with \*MATRIX OUTPUT, `node,dof, node,dof, value` | by node and degree of freedom | real |
+//! | NASTRAN, DMIG in small, large and free fields | by grid point and component | real, complex |
+//! | NASTRAN, OUTPUT4 as text | by number | real, complex |
+//!
+//! Of a symmetric matrix these may hold half: where no entry off the diagonal has its mirror image, these are added.
+
+mod abaqus;
+mod dmig;
+mod found;
+mod op4;
+
+use super::matrix_market;
+use found::File;
+pub use found::{Found, Label, Labelled};
+use std::io::Read;
+use std::path::Path;
+use stridor_base::error::Result;
+use stridor_base::error::read::{plain, read_bytes};
+
+/// A row of the table.
+struct Row {
+    /// Whether a file is of this format.
+    is: fn(&[u8]) -> bool,
+    read: fn(&File) -> Result<Found>,
+}
+
+const FORMATS: &[Row] = &[
+    Row { is: abaqus::is, read: abaqus::read },
+    Row { is: dmig::is, read: dmig::read },
+    Row { is: op4::is, read: op4::read },
+    // The rest, with a fault where the file does not begin as it should.
+    Row {
+        is: |_| true,
+        read: |file| matrix_market::parse(file.name, file.bytes, file.known).map(Found::Whole),
+    },
+];
+
+/// Reads the matrix in the file at `path`; of several the one whose name begins with `initial`. `known` is as in [`matrix_market::read`].
+///
+/// # Errors
+/// Every fault of the file with its line.
+pub fn read(path: &Path, initial: char, known: usize) -> Result<Found> {
+    let bytes = read_bytes(path, "a file with a matrix")?;
+    parse(&path.display().to_string(), &bytes, initial, known)
+}
+
+/// Reads the bytes of a file that faults call `name`.
+///
+/// # Errors
+/// Those of [`read`].
+///
+/// ```
+/// use stridor_linalg::matrix_files::{Found, parse};
+/// let file = b"1,1, 1,1, 3.0\n2,1, 1,1, -1.5\n";
+/// let Ok(Found::Labelled(k)) = parse("k.mtx", file, 'K', 0) else { unreachable!() };
+/// let k = k.numbered(&k.labels().into_iter().collect::<Vec<_>>()).unwrap();
+/// assert_eq!((k.re[(0, 0)], k.re[(0, 1)], k.re[(1, 0)]), (3.0, -1.5, -1.5));
+/// ```
+pub fn parse(name: &str, bytes: &[u8], initial: char, known: usize) -> Result<Found> {
+    let bytes = &*plain(bytes);
+    let row = FORMATS.iter().find(|row| (row.is)(bytes)).unwrap_or(&FORMATS[FORMATS.len() - 1]);
+    (row.read)(&File { name, bytes, initial, known })
+}
+
+/// Whether the rows of the matrices in the file at `path` are of nodes.
+///
+/// # Errors
+/// A file that cannot be read.
+pub fn is_labelled(path: &Path) -> Result<bool> {
+    let mut first = [0; 2];
+    let begins = std::fs::File::open(path).and_then(|mut file| file.read_exact(&mut first));
+    if begins.is_ok() && first == *b"%%" {
+        return Ok(false);
+    }
+    let bytes = read_bytes(path, "a file with a matrix")?;
+    let bytes = &*plain(&bytes);
+    Ok(abaqus::is(bytes) || dmig::is(bytes))
+}
+
+#[cfg(test)]
+mod tests;
