@@ -4,7 +4,7 @@ use super::error_json::fault_json;
 use super::output::{Common, SUCCESS, give, say};
 use crate::case::{Parameter, read_case};
 use crate::error::Result;
-use crate::job::{CaseWarnings, Prepared, Selection, check_case, expected_memory};
+use crate::job::{CaseWarnings, Prepared, Selection, check_case, check_memory};
 use clap::Args;
 use serde_json::{Value, json};
 use std::ops::Bound;
@@ -44,8 +44,9 @@ pub fn run(options: &CheckOptions, common: &Common) -> Result<u8> {
         for warning in warnings.words() {
             say(format!("warning: {warning}"))?;
         }
+        let memory = check_memory(&prepared, Selection::Listed)?;
         say(format!("{}: valid. {}.", options.case.display(), sizes(&prepared)))?;
-        if let Some(expected) = expected_memory(&prepared, Selection::Listed)? {
+        if let Some(expected) = memory {
             say(format!(
                 "A run is expected to take about {} of memory: {:.2e} entries of a factor, about {:.0} real modes.",
                 expected.words(),
@@ -71,7 +72,7 @@ fn sizes(prepared: &Prepared) -> String {
 fn as_json(options: &CheckOptions, prepared: &Prepared, warnings: &CaseWarnings) -> Result<Value> {
     let size = prepared.size();
     let sentences = warnings.sentences.iter().map(|sentence| json!({ "message": sentence }));
-    let memory = expected_memory(prepared, Selection::Listed)?;
+    let memory = check_memory(prepared, Selection::Listed)?;
     let mut all = json!({
         "ok": true,
         "case": options.case.display().to_string(),

@@ -78,12 +78,13 @@ mod tests {
     use crate::system::ModalDamping;
     use faer::Mat;
 
-    /// Random systems with contacts, skew parts and damping of every kind.
+    /// Random systems with contacts of few and of many directions, skew parts and damping of every kind.
     #[test]
     fn products_and_solutions_are_those_of_the_dense_matrix() {
-        let n = 24;
-        for seed in 1..=6 {
-            let mut system = random_system(n, 3, 3.0, seed);
+        for seed in 1..=9 {
+            let many = seed > 6;
+            let (n, points, load) = if many { (150, 130, 3e3) } else { (24, 3, 3.0) };
+            let mut system = random_system(n, points, load, seed);
             if seed % 2 == 0 {
                 system.coupling = Some(skew_parts(n, seed, 5.0, 0.0));
             }
@@ -93,6 +94,7 @@ mod tests {
             let steady = solve_steady(&system, &SteadyOptions::default(), &()).unwrap();
             let operator = Operator::new(&system, &steady).unwrap();
             let interface = Interface::new(&system, &steady);
+            assert_eq!(many, interface.directions.len() > 300);
             let own = system.constant_matrices().unwrap();
             let (mass, stiffness) = (own.mass.to_dense(), own.stiffness.to_dense());
             let damping = own.damping.map_or(Mat::zeros(n, n), |c| c.to_dense());

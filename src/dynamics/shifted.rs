@@ -8,11 +8,15 @@ use crate::linalg::lu::Lu;
 use crate::linalg::multivector::{expand, gram};
 use crate::linalg::sparse::{add_scaled, multiply};
 use crate::linalg::toar::ShiftedQuadratic;
-use crate::linalg::{SparseMatrix, c64};
+use crate::linalg::{SparseMatrix, SparseVector, c64};
 use faer::{Mat, MatRef};
 
+/// Of more directions than these the interface is part of the sparse matrix, if that takes no more entries than their responses.
+const FEW_DIRECTIONS: usize = 300;
+
 /// Q at a shift: P = P_s + F G Fᵀ with the sparse P_s = σ²M + σC + K + iH, complex symmetric unless K and C have sparse skew
-/// parts, and F = \[B W\], G = diag(σ c, k + σ c_c) of the modal damping and the interface.
+/// parts, and F = \[B W\], G = diag(σ c, k + σ c_c) of the modal damping and the interface. An interface of many directions is part
+/// of P_s, which is not symmetric then, and F = B: no matrix is dense in the number of contact points.
 ///
 /// P⁻¹ r = y − Y (I + G FᵀY)⁻¹ G Fᵀ y with y = P_s⁻¹ r and Y = P_s⁻¹ F (Sherman, Morrison & Woodbury), and with the adjoints
 /// of P_s and G for P⁻ᴴ r.
@@ -20,6 +24,8 @@ pub struct Shifted<'a> {
     operator: &'a Operator<'a>,
     shift: c64,
     factors: FactorKind,
+    /// W, unless it is part of P_s.
+    directions: &'a [&'a SparseVector],
     /// G.
     small: Mat<c64>,
     right: Woodbury,
@@ -78,10 +84,15 @@ impl<'a> Shifted<'a> {
             vec![(one, &operator.stiffness), (shift * shift, operator.mass)];
         terms.extend(operator.damping.viscous.as_deref().map(|c| (shift, c)));
         terms.extend(operator.damping.hysteretic.as_deref().map(|h| (c64::new(0.0, 1.0), h)));
-        let factors = match operator.skew {
-            None => FactorKind::Symmetric(factorize(&add_scaled(&terms))?),
-            Some(skew) => {
-                terms.extend([(one, &*skew.stiffness), (shift, &*skew.damping)]);
+        let assembled = assembles(operator).then(|| operator.interface.assembled(operator.n()));
+        // The pattern is a symmetric one.
+        let mirrored = assembled.iter().flatten().map(transposed).collect::<Vec<SparseMatrix>>();
+        let factors = match (operator.skew, &assembled) {
+            (None, None) => FactorKind::Symmetric(factorize(&add_scaled(&terms))?),
+            (skew, assembled) => {
+                terms.extend(skew.iter().flat_map(|skew| [(one, &*skew.stiffness), (shift, &*skew.damping)]));
+                terms.extend(assembled.iter().flat_map(|[k, c]| [(one, k), (shift, c)]));
+                terms.extend(mirrored.iter().map(|a| (c64::new(0.0, 0.0), a)));
                 let sum = add_scaled(&terms);
                 let symbolic = match known {
                     Some(known) => known.clone(),
@@ -90,11 +101,14 @@ impl<'a> Shifted<'a> {
                 FactorKind::Unsymmetric(Box::new(UnsymmetricFactor::new(&symbolic, sum)?))
             }
         };
-        let small = small(operator, shift);
+        let directions: &[&SparseVector] =
+            if assembled.is_some() { &[] } else { &operator.interface.directions };
+        let small = small(operator, shift, directions.len());
         let mut shifted = Shifted {
             operator,
             shift,
             factors,
+            directions,
             small,
             right: Woodbury { responses: Mat::zeros(0, 0), lu: Lu::new(Mat::zeros(0, 0)) },
             left: None,
@@ -142,7 +156,7 @@ impl<'a> Shifted<'a> {
                 .subcols_mut(0, m)
                 .copy_from(Mat::from_fn(operator.n(), m, |i, j| c64::new(basis[(i, j)], 0.0)));
         }
-        for (j, direction) in operator.interface.directions.iter().enumerate() {
+        for (j, direction) in self.directions.iter().enumerate() {
             direction.iter().for_each(|(i, v)| responses[(i, m + j)] = c64::new(v, 0.0));
         }
         if size > 0 {
@@ -174,7 +188,7 @@ impl<'a> Shifted<'a> {
                 (0..m).for_each(|i| moved[(i, j)] = c64::new(re[(i, j)], im[(i, j)]));
             }
         }
-        for (i, direction) in self.operator.interface.directions.iter().enumerate() {
+        for (i, direction) in self.directions.iter().enumerate() {
             for j in 0..x.ncols() {
                 moved[(m + i, j)] = direction.iter().map(|(row, v)| x[(row, j)] * v).sum();
             }
@@ -218,10 +232,8 @@ impl<'a> Shifted<'a> {
                 Side::Left => r += times(&skew.damping, x),
             }
         }
-        let damped = self.operator.damping.modal.as_ref();
-        let m = damped.map_or(0, |modal| modal.coefficients.len());
-        let moved = self.along(x.as_ref());
-        if let Some(modal) = damped {
+        if let Some(modal) = &self.operator.damping.modal {
+            let (m, moved) = (modal.coefficients.len(), self.along(x.as_ref()));
             let part = |f: fn(&c64) -> f64| {
                 let force = Mat::from_fn(m, 1, |i, _| modal.coefficients[i] * f(&moved[(i, 0)]));
                 expand(modal.basis.as_ref(), force.as_ref())
@@ -235,23 +247,36 @@ impl<'a> Shifted<'a> {
                 Side::Right => (term.row, term.column),
                 Side::Left => (term.column, term.row),
             };
-            let force = moved[(m + from, 0)] * term.damping;
+            let force = directions[from].iter().map(|(row, v)| x[(row, 0)] * v).sum::<c64>() * term.damping;
             directions[to].iter().for_each(|(i, v)| r[(i, 0)] += force * v);
         }
         r
     }
 }
 
-/// G.
-fn small(operator: &Operator<'_>, shift: c64) -> Mat<c64> {
+fn transposed(a: &SparseMatrix) -> SparseMatrix {
+    a.transpose().to_col_major().expect("indices are below the size")
+}
+
+/// Whether the interface is part of P_s.
+fn assembles(operator: &Operator<'_>) -> bool {
+    let interface = &operator.interface;
+    let count = |d: usize| interface.directions[d].indices().len();
+    let entries: usize = interface.terms.iter().map(|term| count(term.row) * count(term.column)).sum();
+    let directions = interface.directions.len();
+    directions > FEW_DIRECTIONS && entries <= operator.n() * directions
+}
+
+/// G, with the last `directions` rows of the interface, or with none.
+fn small(operator: &Operator<'_>, shift: c64, directions: usize) -> Mat<c64> {
     let modal = operator.damping.modal.as_ref();
-    let (m, interface) = (modal.map_or(0, |modal| modal.coefficients.len()), &operator.interface);
-    let size = m + interface.directions.len();
+    let m = modal.map_or(0, |modal| modal.coefficients.len());
+    let size = m + directions;
     let mut small = Mat::<c64>::zeros(size, size);
     for (i, c) in modal.iter().flat_map(|modal| modal.coefficients.iter().enumerate()) {
         small[(i, i)] = shift * *c;
     }
-    for term in &interface.terms {
+    for term in operator.interface.terms.iter().filter(|_| directions > 0) {
         small[(m + term.row, m + term.column)] += c64::new(term.stiffness, 0.0) + shift * term.damping;
     }
     small

@@ -57,6 +57,37 @@ pub(crate) fn pair(
     }
 }
 
+/// A bar of 60 masses on a belt, `each` contact points from one to the next: it bends across (y) and stretches along (x), and touches below its axis,
+/// so that t is x − h y′; the face is inclined, so that friction and pressure drive each other: the bar flutters. Damped in proportion to stiffness and mass.
+pub(crate) fn fluttering_bar(load: f64, each: usize) -> System {
+    const MASSES: usize = 60;
+    let chain = |i: usize, j: usize, link: f64, ground: f64| match i.abs_diff(j) {
+        0 => link * if i == 0 || i == MASSES - 1 { 1.0 } else { 2.0 } + ground,
+        1 => -link,
+        _ => 0.0,
+    };
+    let stiffness = |i: usize, j: usize| match (i < MASSES, j < MASSES) {
+        (true, true) => chain(i, j, 2000.0, 1.0),
+        (false, false) => chain(i - MASSES, j - MASSES, 5000.0, 20.0),
+        _ => 0.0,
+    };
+    let mut structure = structure(2 * MASSES, |i, j| f64::from(i == j), stiffness);
+    structure.damping.viscous =
+        Some(sparse::add_scaled(&[(2e-4, &structure.stiffness), (0.02, &structure.mass)]).into());
+    let points = (0..each * (MASSES - 1)).map(|p| {
+        let (node, part) = (p / each, ((p % each) as f64 + 0.5) / each as f64);
+        let between = |first: usize| [(first + node, 1.0 - part), (first + node + 1, part)];
+        let slope = [(node, 2.0), (node + 1, -2.0)];
+        let across = [between(0).map(|(i, v)| (i, -v)), between(MASSES).map(|(i, v)| (i, 0.2 * v))].concat();
+        let along = between(MASSES).into_iter().chain(slope).collect::<Vec<_>>();
+        point(0.0, 3.0 / each as f64, vector(&across), vector(&along), vector(&[]))
+    });
+    let normal = NormalLaw { stiffness: 60.0, cubic_stiffness: 1e6, damping: 0.0, bilateral: false };
+    let law = SlidingLaw::new(normal, Coulomb { mu0: 0.3 }, 1e-3);
+    let pairs = vec![pair(points.collect(), law, Closing::Load(load), 0.02)];
+    System { structure, pairs, load: vec![0.0; 2 * MASSES], prestress: None, coupling: None }
+}
+
 /// Random skew parts of full rank, gyroscopic of the size `spin` and circulatory of the size `friction`.
 pub(crate) fn skew_parts(n: usize, seed: u64, spin: f64, friction: f64) -> Coupling {
     let mut random = Random::seeded(seed);

@@ -14,6 +14,7 @@ use crate::modal::{ModesWanted, RealModes, compute};
 use crate::progress::Observer;
 use crate::reduction::{DampingOfModes, MODES, Receptance, Reduced};
 use crate::results::{FrfResponse, FrfResult, PlaceAndDirection, Resonance};
+use crate::system::System;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
@@ -132,13 +133,12 @@ impl PreparedFrf<'_> {
             std::iter::once(&self.force.direction).chain(&places).cloned().collect();
         let steady = steady.filter(|_| self.slides());
         check_damping_frequencies(&prepared.system.structure, prepared.case, 2.0 * band[1])?;
-        let Receptance { system, steady, real, reduced } = {
+        let Receptance { system, steady, real, reduced, small } = {
             let of = |mass: &SparseMatrix, real: &RealModes| damping_of_response(mass, real, prepared.case);
             let damping = DampingOfModes { of: &of, needs_below: response_needs(prepared.case) };
             Receptance::new(&prepared.system, steady, (band[1], &forms), damping, observer)?
         };
-        let small = reduced.steady(&steady);
-        let few = Harmonic::new(&reduced.system, &small)?;
+        let few = Harmonic::new(&small.0, &small.1)?;
         let full = Harmonic::new(&system, &steady)?;
         let (force, seen) = (reduced.form(&self.force.direction), places.iter().map(|p| reduced.form(p)));
         let seen: Vec<SparseVector> = seen.collect();
@@ -146,7 +146,9 @@ impl PreparedFrf<'_> {
         let direct = |hz: f64| full.at(TAU * hz, &self.force.direction, &places);
         let closed = match self.wanted.contact {
             FrfContact::Open => None,
-            FrfContact::Sliding => Some(closed_modes(&reduced, &small, MODES * band[1], observer)?),
+            FrfContact::Sliding => {
+                Some(closed_modes((&system, &steady), (&reduced, &small), MODES * band[1], observer)?)
+            }
         };
         let mut resonances = self.resonances(prepared, closed.as_ref().unwrap_or(&real))?;
         for resonance in &mut resonances {
@@ -264,15 +266,19 @@ impl PreparedFrf<'_> {
     }
 }
 
-/// The real modes below `hz` \[Hz\] with the contacts closed and without friction, of the small system that gives the response.
+/// The real modes below `hz` \[Hz\] with the contacts closed and without friction, of the small system that gives the response if the contacts
+/// are in it.
 fn closed_modes(
-    reduced: &Reduced,
-    small: &SteadySliding,
+    (system, steady): (&System, &SteadySliding),
+    (reduced, small): (&Reduced, &(System, SteadySliding)),
     hz: f64,
     observer: &dyn Observer,
 ) -> Result<RealModes> {
-    let structure = closed_structure(&reduced.system, small)?;
-    let (modes, _) = compute(&structure, ModesWanted::BelowHz(hz), observer)?;
+    let below = |structure| compute(&structure, ModesWanted::BelowHz(hz), observer);
+    if reduced.contacts.is_some() {
+        return Ok(below(closed_structure(system, steady)?)?.0);
+    }
+    let (modes, _) = below(closed_structure(&small.0, &small.1)?)?;
     Ok(RealModes { shapes: &reduced.basis * &modes.shapes, ..modes })
 }
 

@@ -5,7 +5,6 @@ use super::modes::real_modes_below;
 use super::prepared::Prepared;
 use super::states::keeps_the_structure;
 use super::studies::{SHARED, UNCERTAINTY, studies};
-use crate::case::TransientAnalysis;
 use crate::error::{Error, Result};
 use crate::linalg::sparse::{add_scaled, sum_of_squares};
 use crate::memory::{Available, available};
@@ -59,6 +58,8 @@ pub struct ExpectedMemory {
     pub left_vectors: bool,
     /// What samples of uncertain scalars take of it \[bytes\].
     pub samples: f64,
+    /// What contacts of the full model take of it in motion in time \[bytes\].
+    pub full_motion: f64,
 }
 
 impl ExpectedMemory {
@@ -87,9 +88,10 @@ impl ExpectedMemory {
                 fill = *fill as f64,
             ),
             format!(
-                "Take a coarser mesh, a lower `cea.basis_below`, `below` or `count`, {}{}or a machine with more memory",
+                "Take a coarser mesh, a lower `cea.basis_below`, `below` or `count`, {}{}{}or a machine with more memory",
                 if self.left_vectors { "`cea.left_vectors = false`, " } else { "" },
                 if self.samples > 0.1 * self.bytes { "fewer `samples`, " } else { "" },
+                if self.full_motion > 0.1 * self.bytes { "`transient.model = \"reduced\"`, " } else { "" },
             ),
         ))
     }
@@ -168,14 +170,18 @@ pub fn expected_memory(prepared: &Prepared, selection: Selection) -> Result<Opti
     };
     let skew = prepared.system.skew().map_or(0.0, |_| SKEW_MATRICES * run.matrix());
     let moves = case.transient.as_ref().filter(|_| selection.includes("transient", case));
-    let motion = moves.map_or(0.0, |wanted| run.motion(&prepared.system, wanted));
-    let bytes = run.peak(kind) + skew + samples + motion;
+    let many = has_many_points(&prepared.system);
+    let reduced = moves.is_some_and(|wanted| wanted.is_reduced(many));
+    let reduced_motion = if reduced { run.reduced_motion(&prepared.system) } else { 0.0 };
+    let full = moves.is_some_and(|wanted| !reduced || wanted.compare_steps.map_or(!many, |steps| steps > 0));
+    let full_motion = if full { run.full_motion(&prepared.system) } else { 0.0 };
+    let bytes = run.peak(kind) + skew + samples + reduced_motion.max(full_motion);
     if dofs < LARGE.0 && bytes < LARGE.1 {
         return Ok(None);
     }
     let left_vectors =
         kind == AnalysisKind::Complex { left_vectors: true } && !selection.takes_left_vectors(case);
-    Ok(Some(ExpectedMemory { bytes, dofs, fill, modes: run.modes, left_vectors, samples }))
+    Ok(Some(ExpectedMemory { bytes, dofs, fill, modes: run.modes, left_vectors, samples, full_motion }))
 }
 
 /// The analysis that takes the most memory.
@@ -200,14 +206,20 @@ struct ProblemSize {
 }
 
 impl ProblemSize {
-    /// What motion in time takes besides \[bytes\]: of the full model square matrices of the contact directions, of a reduced one its
-    /// vectors, which contacts of many points need many of.
-    fn motion(&self, system: &System, wanted: &TransientAnalysis) -> f64 {
-        let (directions, many) = (3.0 * system.points().count() as f64, has_many_points(system));
-        if !wanted.is_reduced(many) {
-            return 8.0 * DENSE_MATRICES * directions * directions;
-        }
-        let vectors = if many { 2.0 * self.modes + CONTACT_SHAPES } else { self.modes + directions };
+    /// What motion in time of the full model takes besides \[bytes\]: square matrices of the contact directions, and of each of these both halves of
+    /// a solution, with entries on its way through the factor only, about the side of a triangle of as many entries as that has.
+    fn full_motion(&self, system: &System) -> f64 {
+        let directions = 3.0 * system.points().count() as f64;
+        let way = (2.0 * self.fill as f64).sqrt().min(self.dofs as f64);
+        8.0 * DENSE_MATRICES * directions * directions + 2.0 * 16.0 * way * directions
+    }
+
+    /// What motion in time of a reduced model takes besides \[bytes\]: its vectors, which contacts of many points need many of.
+    fn reduced_motion(&self, system: &System) -> f64 {
+        let vectors = match has_many_points(system) {
+            true => 2.0 * self.modes + CONTACT_SHAPES,
+            false => self.modes + 3.0 * system.points().count() as f64,
+        };
         8.0 * REDUCED_COPIES * vectors.min(self.dofs as f64) * self.dofs as f64
     }
 
@@ -312,6 +324,7 @@ mod tests {
             modes: 40.0,
             left_vectors: true,
             samples: 0.0,
+            full_motion: 0.0,
         };
         let by = "the machine's free memory";
         assert!(expected.check(&Available { bytes: 4_000_000_000, by }).is_ok());
@@ -325,6 +338,9 @@ mod tests {
         let other = ExpectedMemory { left_vectors: false, samples: 1e9, ..expected };
         let text = other.check(&Available { bytes: 1 << 30, by }).unwrap_err().to_string();
         assert!(!text.contains("left_vectors") && text.contains("fewer `samples`"), "{text}");
+        let other = ExpectedMemory { full_motion: 2e9, ..expected };
+        let text = other.check(&Available { bytes: 1 << 30, by }).unwrap_err().to_string();
+        assert!(text.contains("`transient.model = \"reduced\"`"), "{text}");
         assert_eq!(error.exit_code(), 1);
     }
 

@@ -82,7 +82,7 @@ pub use imported::{read_points, read_rows};
 #[cfg(feature = "cli")]
 pub use known::origin;
 pub use measured::{measured_set, read_modes};
-pub use memory::{ExpectedMemory, expected_memory};
+pub use memory::{ExpectedMemory, check_memory};
 #[cfg(feature = "cli")]
 pub use parts::{PartDone, parts_done, parts_folder, run_part, run_parts};
 pub use prepared::Prepared;

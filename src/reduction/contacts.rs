@@ -9,27 +9,37 @@
 //! besides. They are smooth as the motion is, so that few directions hold nearly all of them, far fewer than there are points. These are the
 //! range of the map from a random motion to its A⁻¹Dφ, found block by block (N. Halko, P. G. Martinsson & J. A. Tropp, SIAM Rev. 53 (2011) 217, §4.4): a
 //! block of fresh motions first measures the basis, by the largest ‖x − P x‖_A/‖x‖_A of its x = A⁻¹Dφ, P being the projection on the basis in
-//! the energy of A; where that is more than the tolerance, the block joins the basis.
+//! the energy of A; where that is more than a part of the tolerance, the block joins the basis. Of the directions that were found in this way the principal ones
+//! of all samples are kept, as many as fresh motions need to be within the tolerance.
+//!
+//! A basis that holds φ of Q(λ)φ = 0 has VᵀQ(λ)V y = 0 with φ = V y: λ is an eigenvalue of the reduced model, too. So complex modes are among the
+//! shapes that it holds exactly, and a small motion grows and turns in it as in the full one.
 
-use crate::equilibrium::{SteadySliding, closed_structure, directions};
+use crate::equilibrium::{ContactBlock, SteadySliding, closed_structure, directions, linearize};
 use crate::error::Result;
-use crate::linalg::dense::symmetric_eigen;
-use crate::linalg::multivector::{append, beside, combine, expand, gram};
+use crate::linalg::dense::{product, symmetric_eigen};
+use crate::linalg::multivector::{append, combine, expand, gram};
 use crate::linalg::random::Random;
 use crate::linalg::sparse::{add_scaled, quadratic_forms, times};
 use crate::linalg::{SparseMatrix, SparseVector};
 use crate::modal::{ModesWanted, RealModes, compute};
 use crate::system::{ContactMotion, ContactPair, ContactPoint, System};
-use faer::{Accum, Mat};
+use faer::{Accum, Mat, MatMut, MatRef};
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 
 /// Random motions of a block. Where 20 of 20 are within an error, 86 % of all such motions are, with a probability of 95 %: 0.86²⁰ = 0.05.
 pub(super) const PROBES: usize = 20;
 /// Blocks, at most.
-const BLOCKS: usize = 40;
-/// How far a random motion changes the penetrations, as a part of those in steady sliding: up to where most points open at times.
+const BLOCKS: usize = 80;
+/// The part of the tolerance within which the directions are from which the principal ones are taken.
+const FINER: f64 = 0.6;
+/// How far a random motion changes the penetrations, as a part of those in steady sliding: up to where most points open at times,
 const CHANGE: [f64; 2] = [0.1, 1.5];
+/// or so little that the contacts answer linearly.
+const SMALL_CHANGE: [f64; 2] = [1e-6, 1e-6];
+/// Terms of the series in ω² of the response to a force, besides the modes.
+const TERMS: usize = 3;
 
 /// Contacts of many points beside a reduced system.
 #[derive(Debug, Clone)]
@@ -75,15 +85,47 @@ impl ReducedContacts {
         let basis = Mat::from_fn(rows.len(), basis.ncols(), |i, j| basis[(rows[i], j)]);
         ReducedContacts { pairs, basis, error }
     }
+
+    /// VᵀK_cV and VᵀC_cV of these contacts at a steady state of the `full` system.
+    pub(super) fn linearised(&self, full: &System, steady: &SteadySliding) -> [Mat<f64>; 2] {
+        let points: Vec<_> = self.pairs.iter().flat_map(|pair| &*pair.points).collect();
+        let blocks = linearize(full, steady).blocks;
+        let seen = Mat::from_fn(3 * blocks.len(), self.basis.ncols(), |i, j| {
+            directions(points[blocks[i / 3].point])[i % 3].dot(self.basis.col_as_slice(j))
+        });
+        let between = |part: &dyn Fn(&ContactBlock) -> [[f64; 3]; 3]| {
+            let forces = Mat::from_fn(seen.nrows(), seen.ncols(), |i, j| {
+                let row = part(&blocks[i / 3])[i % 3];
+                (0..3).map(|c| row[c] * seen[(i - i % 3 + c, j)]).sum::<f64>()
+            });
+            gram(seen.as_ref(), forces.as_ref())
+        };
+        [between(&|block| block.stiffness), between(&|block| block.damping)]
+    }
 }
 
-/// A-orthonormal shapes: the modes of A up to where `real` reaches, u₀, the responses to `forces` and to those that occur in the contacts,
-/// these with about the relative error `tolerance`, which is measured.
+/// What a reduced model holds whose contacts of many points are apart from it.
+#[derive(Debug)]
+pub struct ManyPoints {
+    /// About the relative error of the deflections under contact forces.
+    pub tolerance: f64,
+    /// Whether the motions are small about steady sliding, so that the contacts answer linearly.
+    pub linear: bool,
+    /// Shapes that are held exactly, of about unit energy or less where they matter less: the [`ComplexModes::parts`] of complex modes.
+    ///
+    /// [`ComplexModes::parts`]: crate::stability::ComplexModes::parts
+    pub shapes: Mat<f64>,
+    /// States that are held exactly, besides steady sliding.
+    pub states: Vec<Vec<f64>>,
+}
+
+/// A-orthonormal shapes: those that `wanted` holds exactly with u₀, the modes of A up to where `real` reaches, the responses to `forces` and to those that
+/// occur in the contacts, these with about the relative error `wanted.tolerance`, which is measured.
 pub(super) fn responses(
     (system, steady): (&System, &SteadySliding),
     real: &RealModes,
-    forces: Mat<f64>,
-    tolerance: f64,
+    mut forces: Mat<f64>,
+    wanted: ManyPoints,
 ) -> Result<(Mat<f64>, ProbedError)> {
     let structure = closed_structure(system, steady)?;
     let highest = real.eigenvalues.last().copied().unwrap_or(0.0).max(0.0).sqrt() / TAU;
@@ -96,50 +138,132 @@ pub(super) fn responses(
         _ => (*structure.stiffness).clone(),
     };
     let factor = structure.engine.factorize(&closed)?;
-    let mut shapes = forces;
-    factor.solve_in_place(shapes.as_mut());
-    let origin = Mat::from_fn(system.n_dofs(), 1, |i, _| steady.displacement[i]);
-    shapes = beside(shapes.as_ref(), origin.as_ref());
-    shapes = beside(beside(modes.shapes.as_ref(), real.shapes.as_ref()).as_ref(), shapes.as_ref());
+    factor.solve_in_place(forces.as_mut());
+    let states: Vec<&[f64]> = wanted.states.iter().chain([&steady.displacement]).map(|x| &**x).collect();
+    let states = Mat::from_fn(system.n_dofs(), states.len(), |i, j| states[j][i]);
     let mut basis = Mat::zeros(system.n_dofs(), 0);
-    join(&mut basis, shapes, &closed, ROUND_OFF)?;
-    let mut motions = RandomMotions::new(system, steady, &modes);
-    let mut error = ProbedError { largest: 0.0, probes: PROBES };
-    for block in 0..=BLOCKS {
+    let unit = |mut shapes: Mat<f64>| {
+        let energies = quadratic_forms(&closed, shapes.as_ref());
+        scale(&mut shapes, &energies);
+        shapes
+    };
+    for shapes in [states, real.shapes.clone()] {
+        join(&mut basis, unit(shapes), &closed, ROUND_OFF)?;
+    }
+    join(&mut basis, wanted.shapes, &closed, ROUND_OFF)?;
+    let least = (0.1 * wanted.tolerance).powi(2);
+    join(&mut basis, unit(modes.shapes.clone()), &closed, least)?;
+    let mut exact = basis.ncols();
+    join(&mut basis, unit(forces), &closed, ROUND_OFF)?;
+    for _ in 1..TERMS {
+        let mut next = times(&structure.mass, basis.subcols(exact, basis.ncols() - exact));
+        factor.solve_in_place(next.as_mut());
+        exact = basis.ncols();
+        join(&mut basis, unit(next), &closed, ROUND_OFF)?;
+    }
+    let exact = basis.ncols();
+    let change = if wanted.linear { SMALL_CHANGE } else { CHANGE };
+    let mut motions = RandomMotions::new((system, steady), &modes, change);
+    let mut fresh = || {
         let forces = motions.forces();
         let mut deflections = forces.clone();
         factor.solve_in_place(deflections.as_mut());
-        error.largest = largest_error(&basis, &forces, &deflections);
-        if error.largest <= tolerance || block == BLOCKS || basis.ncols() + PROBES > basis.nrows() {
+        Fresh { forces, deflections }
+    };
+    let mut samples = Vec::new();
+    for _ in 0..BLOCKS {
+        let mut block = fresh();
+        let enough = block.largest_error(basis.as_ref()) <= FINER * wanted.tolerance;
+        if enough || basis.ncols() + PROBES > basis.nrows() {
             break;
         }
-        join(&mut basis, deflections, &closed, (0.1 * tolerance).powi(2))?;
+        block.scale();
+        join(&mut basis, block.deflections, &closed, least)?;
+        samples.push(gram(basis.subcols(exact, basis.ncols() - exact), block.forces.as_ref()));
     }
+    let all = basis.ncols() - exact;
+    let mut kept = principal(basis.subcols_mut(exact, all), &samples, 0.5 * wanted.tolerance)?;
+    let error = loop {
+        let largest = fresh().largest_error(basis.subcols(0, exact + kept));
+        if largest <= wanted.tolerance || kept == all {
+            break ProbedError { largest, probes: PROBES };
+        }
+        kept = (kept + PROBES / 2).min(all);
+    };
+    basis.resize_with(basis.nrows(), exact + kept, |_, _| 0.0);
     Ok((basis, error))
 }
 
-/// The largest ‖x − P x‖_A/‖x‖_A of x = A⁻¹f: with the A-orthonormal X of P, ‖x‖²_A = xᵀf and XᵀA x = Xᵀf.
-fn largest_error(basis: &Mat<f64>, forces: &Mat<f64>, deflections: &Mat<f64>) -> f64 {
-    let shares = gram(basis.as_ref(), forces.as_ref());
-    let of = |j: usize| {
-        let pairs = forces.col_as_slice(j).iter().zip(deflections.col_as_slice(j));
-        let energy: f64 = pairs.map(|(f, x)| f * x).sum();
-        let held: f64 = shares.col_as_slice(j).iter().map(|s| s * s).sum();
-        if energy > 0.0 { ((energy - held).max(0.0) / energy).sqrt() } else { 0.0 }
-    };
-    (0..forces.ncols()).map(of).fold(0.0, f64::max)
+/// Turns A-orthonormal directions into the principal ones of samples of unit energy, given their coordinates, largest first; says how many leave less
+/// than a relative error in the mean.
+fn principal(mut directions: MatMut<'_, f64>, samples: &[Mat<f64>], error: f64) -> Result<usize> {
+    let all = directions.ncols();
+    if all == 0 {
+        return Ok(0);
+    }
+    let mut energy = Mat::<f64>::zeros(all, all);
+    for block in samples {
+        let m = block.nrows();
+        let seen = product(block.as_ref(), block.transpose());
+        let mut part = energy.submatrix_mut(0, 0, m, m);
+        part += seen;
+    }
+    let (values, vectors) = symmetric_eigen(energy.as_ref())?;
+    let vectors = Mat::from_fn(all, all, |i, j| vectors[(i, all - 1 - j)]);
+    let turned = expand(directions.as_ref(), vectors.as_ref());
+    directions.copy_from(turned);
+    let (mut left, least) = (0.0, (PROBES * samples.len()) as f64 * error * error);
+    let spare = values.iter().take_while(|value| {
+        left += **value;
+        left <= least
+    });
+    Ok(all - spare.count())
+}
+
+/// Deflections A⁻¹f of a block of fresh motions.
+struct Fresh {
+    forces: Mat<f64>,
+    deflections: Mat<f64>,
+}
+
+impl Fresh {
+    /// xᵀA x = xᵀf of each.
+    fn energies(&self) -> Vec<f64> {
+        let columns = self.forces.col_iter().zip(self.deflections.col_iter());
+        columns.map(|(f, x)| f.iter().zip(x.iter()).map(|(f, x)| f * x).sum()).collect()
+    }
+
+    /// The largest ‖x − P x‖_A/‖x‖_A: with the A-orthonormal X of P, XᵀA x = Xᵀf.
+    fn largest_error(&self, basis: MatRef<'_, f64>) -> f64 {
+        let shares = gram(basis, self.forces.as_ref());
+        let of = |(j, energy): (usize, f64)| {
+            let held: f64 = shares.col_as_slice(j).iter().map(|s| s * s).sum();
+            if energy > 0.0 { ((energy - held).max(0.0) / energy).sqrt() } else { 0.0 }
+        };
+        self.energies().into_iter().enumerate().map(of).fold(0.0, f64::max)
+    }
+
+    /// Brings each to unit energy.
+    fn scale(&mut self) {
+        let energies = self.energies();
+        scale(&mut self.forces, &energies);
+        scale(&mut self.deflections, &energies);
+    }
+}
+
+/// Divides each column by the root of its energy.
+fn scale(columns: &mut Mat<f64>, energies: &[f64]) {
+    for (column, energy) in columns.col_iter_mut().zip(energies) {
+        let factor = if *energy > 0.0 { 1.0 / energy.sqrt() } else { 0.0 };
+        column.iter_mut().for_each(|x| *x *= factor);
+    }
 }
 
 /// A direction of shapes below this part of their own energy is round-off.
 const ROUND_OFF: f64 = 1e-10;
 
-/// Makes `shapes`, each of unit energy, A-orthogonal to a basis and adds the directions of their span that hold more than `least` of it.
+/// Makes `shapes` of unit energy A-orthogonal to a basis and adds the directions of their span that hold more than `least` of it.
 fn join(basis: &mut Mat<f64>, mut shapes: Mat<f64>, closed: &SparseMatrix, least: f64) -> Result<()> {
-    let energies = quadratic_forms(closed, shapes.as_ref());
-    for (shape, energy) in shapes.col_iter_mut().zip(energies) {
-        let scale = if energy > 0.0 { 1.0 / energy.sqrt() } else { 0.0 };
-        shape.iter_mut().for_each(|x| *x *= scale);
-    }
     for _ in 0..2 {
         let share = gram(basis.as_ref(), times(closed, shapes.as_ref()).as_ref());
         combine(shapes.as_mut(), Accum::Add, basis.as_ref(), share.as_ref(), -1.0);
@@ -157,16 +281,22 @@ struct RandomMotions<'a> {
     system: &'a System,
     steady: &'a SteadySliding,
     modes: &'a RealModes,
+    /// The changes of the penetrations, as a part of `depth`.
+    change: [f64; 2],
     /// √(mean δ₀²) of the points that are closed \[m\].
     depth: f64,
     random: Random,
 }
 
 impl<'a> RandomMotions<'a> {
-    fn new(system: &'a System, steady: &'a SteadySliding, modes: &'a RealModes) -> Self {
+    fn new(
+        (system, steady): (&'a System, &'a SteadySliding),
+        modes: &'a RealModes,
+        change: [f64; 2],
+    ) -> Self {
         let closed = steady.points.iter().filter(|point| point.closed());
         let depth = mean_square(closed.map(|point| point.penetration));
-        RandomMotions { system, steady, modes, depth, random: Random::new() }
+        RandomMotions { system, steady, modes, change, depth, random: Random::new() }
     }
 
     /// D φ of a block of motions, one a column.
@@ -182,7 +312,7 @@ impl<'a> RandomMotions<'a> {
         let mut forces = Mat::zeros(u.nrows(), PROBES);
         for j in 0..PROBES {
             let points = self.system.points().map(|(_, point)| point.normal.dot(u.col_as_slice(j)));
-            let change = self.random.between(CHANGE[0], CHANGE[1]) * self.depth;
+            let change = self.random.between(self.change[0], self.change[1]) * self.depth;
             let scale = change / mean_square(points).max(f64::MIN_POSITIVE);
             for x in [&mut u, &mut v] {
                 x.col_as_slice_mut(j).iter_mut().for_each(|x| *x *= scale);

@@ -13,7 +13,7 @@
 mod contacts;
 mod receptance;
 
-pub use contacts::{ProbedError, ReducedContacts};
+pub use contacts::{ManyPoints, ProbedError, ReducedContacts};
 
 pub use receptance::{DampingOfModes, MODES, Receptance};
 
@@ -77,6 +77,30 @@ impl Reduced {
     pub fn steady(&self, steady: &SteadySliding) -> SteadySliding {
         SteadySliding { displacement: self.coordinates(&steady.displacement), ..steady.clone() }
     }
+
+    /// A model whose contacts are apart from it, with K_c and C_c of these at a steady state of the `full` system between its coordinates in
+    /// their place; `None` of one that has them in it.
+    pub fn linearised(&self, full: &System, steady: &SteadySliding) -> Option<(System, SteadySliding)> {
+        let [mut stiffness, mut damping] = self.contacts.as_ref()?.linearised(full, steady);
+        if let Some(rest) = &self.system.coupling {
+            for (i, row) in rest.directions.iter().enumerate() {
+                for (j, column) in rest.directions.iter().enumerate() {
+                    for ((a, x), (b, y)) in row.iter().flat_map(|x| column.iter().map(move |y| (x, y))) {
+                        stiffness[(a, b)] += x * rest.stiffness[(i, j)] * y;
+                        damping[(a, b)] += x * rest.damping[(i, j)] * y;
+                    }
+                }
+            }
+        }
+        let unit = |k: usize| SparseVector::from_entries([(k, 1.0)]);
+        let directions = (0..self.basis.ncols()).map(unit).collect();
+        let system = System {
+            coupling: Some(Coupling { directions, stiffness, damping, skew: None }),
+            ..self.system.clone()
+        };
+        let own = SteadySliding { approach: Vec::new(), points: Vec::new(), ..self.steady(steady) };
+        Some((system, own))
+    }
 }
 
 /// Whether a system has so many contact points that they are not reduced one by one.
@@ -85,8 +109,8 @@ pub fn has_many_points(system: &System) -> bool {
 }
 
 /// Reduces `system` about its steady state to its real modes `real` and the residual attachment of its contact points
-/// and of the `forces` on it; with a `tolerance` to that of the forces that occur in the contacts, with about this relative error, in place
-/// of the points one by one.
+/// and of the `forces` on it; with `many_points` to that of the forces that occur in the contacts and to what that
+/// names, in place of the points one by one.
 ///
 /// # Errors
 /// A stiffness that cannot be factorised, even with a little mass on it.
@@ -95,12 +119,12 @@ pub fn reduce(
     steady: &SteadySliding,
     real: &RealModes,
     forces: &[SparseVector],
-    tolerance: Option<f64>,
+    many_points: Option<ManyPoints>,
 ) -> Result<Reduced> {
     let n = system.n_dofs();
     let stiffness = tangent_stiffness(system, &steady.displacement)?;
     let mass = &system.structure.mass;
-    let many = tolerance.is_some();
+    let many = many_points.is_some();
     let imported = system.coupling.iter().flat_map(|rest| &rest.directions);
     let few = system.points().filter(|_| !many);
     let touched = few.flat_map(|(_, point)| {
@@ -113,8 +137,8 @@ pub fn reduce(
     let load = column(&system.load);
     let mut responses = beside(dense_columns(n, &directions).as_ref(), load.as_ref());
     let mut probed = None;
-    if let Some(tolerance) = tolerance {
-        let (found, error) = contacts::responses((system, steady), real, responses, tolerance)?;
+    if let Some(wanted) = many_points {
+        let (found, error) = contacts::responses((system, steady), real, responses, wanted)?;
         (responses, probed) = (found, Some(error));
     } else {
         softened(&stiffness, mass, real)?.solve_in_place(responses.as_mut());

@@ -54,6 +54,7 @@ pub use structural::Structural;
 
 use crate::linalg::c64;
 use crate::numbers::hertz;
+use faer::Mat;
 
 /// The complex modes of a system at steady sliding, ascending in frequency; one of each conjugate pair (ω ≥ 0).
 #[derive(Debug, Clone)]
@@ -68,6 +69,19 @@ pub struct ComplexModes {
     pub warnings: Vec<String>,
     /// A premise of every statement on stability that is false: such as a mass matrix with negative eigenvalues.
     pub broken_premise: Option<&'static str>,
+}
+
+impl ComplexModes {
+    /// Re φ/|λ| and Im φ/|λ| of each mode, of which φᴴMφ = 1 makes the energy about one; those with λ = 0 are left out.
+    pub fn parts(&self) -> Mat<f64> {
+        let modes: Vec<&ComplexMode> = self.modes.iter().filter(|mode| !mode.is_zero()).collect();
+        let n = modes.first().map_or(0, |mode| mode.right.len());
+        Mat::from_fn(n, 2 * modes.len(), |i, j| {
+            let mode = modes[j / 2];
+            let part = if j % 2 == 0 { mode.right[i].re } else { mode.right[i].im };
+            part / mode.eigenvalue.norm()
+        })
+    }
 }
 
 /// One complex mode with the measures of its own error.

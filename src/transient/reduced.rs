@@ -14,7 +14,8 @@ use faer::Mat;
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// Newton's steps below this part of the motion are round-off of the reduced equations.
+/// A step of Newton's below this part of the position is the last one. It is taken: beside a steady state that is 1e8 times as large, a small
+/// motion would otherwise keep the acceleration that it had.
 const SETTLED: f64 = 1e-12;
 /// The part of a step that its next one with the same tangent may have before the tangent is made anew.
 const SLOW: f64 = 0.3;
@@ -228,6 +229,19 @@ impl<'a> ReducedStep<'a> {
         held.into_iter().map(change).collect()
     }
 
+    /// From the last iterate a part of Newton's step, with these changes of the forces.
+    fn advance(&mut self, part: f64, forces: &[(usize, [f64; 3])]) {
+        let towards = |at: &mut [f64], last: &[f64], step: &[f64]| {
+            at.iter_mut().zip(last.iter().zip(step)).for_each(|(x, (last, step))| *x = last + part * step);
+        };
+        towards(&mut self.at.delta, &self.last.delta, self.step.col_as_slice(0));
+        towards(&mut self.at.along, &self.last.along, self.way.col_as_slice(0));
+        for (p, change) in forces {
+            let rows = 3 * p..3 * p + 3;
+            towards(&mut self.at.force[rows.clone()], &self.last.force[rows], change);
+        }
+    }
+
     /// Leaves Δ in `h`, and what was found in `to`.
     fn answer(&self, h: &mut Mat<f64>, to: &mut State) {
         to.answer(&self.reaction);
@@ -269,27 +283,19 @@ impl Solver for ReducedStep<'_> {
             if !length.is_finite() {
                 return Err(StepFailure::NotFinite);
             }
-            if length <= self.round_off() && self.reaction.mismatch(&self.at.force) <= UNMATCHED {
-                self.answer(h, to);
-                return Ok(());
-            }
             let forces = self.follow();
             self.last.clone_from(&self.at);
             self.step.copy_from(&self.again);
             self.way.copy_from(&self.moved);
+            if length <= self.round_off() && self.reaction.mismatch(&self.at.force) <= UNMATCHED {
+                self.advance(1.0, &forces);
+                self.evaluate(h, from, to);
+                self.answer(h, to);
+                return Ok(());
+            }
             let mut damping = 1.0;
             let left = loop {
-                let towards = |at: &mut [f64], last: &[f64], step: &[f64]| {
-                    at.iter_mut()
-                        .zip(last.iter().zip(step))
-                        .for_each(|(x, (last, step))| *x = last + damping * step);
-                };
-                towards(&mut self.at.delta, &self.last.delta, self.step.col_as_slice(0));
-                towards(&mut self.at.along, &self.last.along, self.way.col_as_slice(0));
-                for (p, change) in &forces {
-                    let rows = 3 * p..3 * p + 3;
-                    towards(&mut self.at.force[rows.clone()], &self.last.force[rows], change);
-                }
+                self.advance(damping, &forces);
                 self.evaluate(h, from, to);
                 let left = self.newton(to);
                 if left <= (1.0 - 0.25 * damping) * length || damping < 1e-3 || !fresh {

@@ -251,8 +251,7 @@ pub fn lines(
         .map(|(c, r)| reduced(&whole, c.as_ref(), r.as_deref(), wanted.solution))
         .collect();
     let seen: Vec<SparseVector> = forms.iter().map(|form| whole.reduced.form(form)).collect();
-    let steady = whole.reduced.steady(&whole.steady);
-    let few = Harmonic::new(&whole.reduced.system, &steady)?;
+    let few = Harmonic::new(&whole.small.0, &whole.small.1)?;
     let full = Harmonic::new(&whole.system, &whole.steady)?;
     let at = |hz: f64| -> Result<ReceptancesAt> {
         let omega = TAU * hz;

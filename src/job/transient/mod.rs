@@ -36,7 +36,7 @@ use crate::equilibrium::SteadySliding;
 use crate::error::{Error, Fault, Result};
 use crate::linalg::SparseVector;
 use crate::progress::Observer;
-use crate::reduction::{Reduced, ReducedContacts, has_many_points, reduce};
+use crate::reduction::{ManyPoints, Reduced, ReducedContacts, has_many_points, reduce};
 use crate::results::{ContactResponses, TransientResult};
 use crate::sound::SoundAccumulator;
 use crate::system::System;
@@ -77,7 +77,10 @@ impl InTime<'_> {
         let mut disturbed = wanted.disturbance.as_ref().map(|d| self.along(d)).transpose()?;
         let reduced = match self.is_reduced(wanted) {
             false => None,
-            true => Some(self.on_reduced(&mut places, &mut disturbed, wanted.contact_tolerance)?),
+            true => {
+                let state = &start.state.displacement;
+                Some(self.on_reduced(&mut places, &mut disturbed, (wanted.contact_tolerance, state))?)
+            }
         };
         let TransientPlaces { pushes, probes, gauges, tracks, acoustics, .. } = places;
         let InitialState { state: origin, at_rest } = start;
@@ -197,16 +200,21 @@ impl InTime<'_> {
         &self,
         places: &mut TransientPlaces,
         disturbed: &mut Option<Along>,
-        tolerance: f64,
+        (tolerance, state): (f64, &[f64]),
     ) -> Result<Reduced> {
-        let tolerance = has_many_points(&self.point.system).then_some(tolerance);
+        let many_points = has_many_points(&self.point.system).then(|| ManyPoints {
+            tolerance,
+            linear: false,
+            shapes: self.complex.modes.parts(),
+            states: vec![state.to_vec()],
+        });
         self.refuse_many_that_travel(places)?;
         let TransientPlaces { pushes, probes, gauges, tracks, .. } = places;
         let stations = tracks.iter().flatten().flat_map(|track| track.stations.iter().flatten());
         let stations = stations.flat_map(|point| [&point.normal, &point.tangents[0], &point.tangents[1]]);
         let pushed = pushes.iter().map(|push| &push.direction);
         let forces: Vec<SparseVector> = pushed.chain(stations).cloned().collect();
-        let reduced = reduce(&self.point.system, &self.point.steady, &self.point.real, &forces, tolerance)?;
+        let reduced = reduce(&self.point.system, &self.point.steady, &self.point.real, &forces, many_points)?;
         pushes.iter_mut().for_each(|push| push.direction = reduced.form(&push.direction));
         probes.iter_mut().for_each(|probe| probe.direction = reduced.form(&probe.direction));
         for gauge in gauges {

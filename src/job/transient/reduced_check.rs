@@ -3,17 +3,16 @@
 use super::in_time::InTime;
 use super::places::TransientPlaces;
 use crate::case::{ModelChoice, TransientAnalysis};
-use crate::equilibrium::{ContactBlock, SteadySliding, directions, linearize};
+use crate::equilibrium::SteadySliding;
 use crate::error::Result;
 use crate::job::sink::{Histories, Memory, ResultStage};
-use crate::linalg::multivector::gram;
-use crate::linalg::{SparseVector, c64};
+use crate::linalg::c64;
 use crate::modal::{RealModes, SturmCertificate};
 use crate::progress::Observer;
 use crate::reduction::Reduced;
 use crate::results::{ComplexResult, Deviation, MotionCompared, ReducedCheck};
 use crate::stability::{ComplexModes, complex_modes};
-use crate::system::{Coupling, System};
+use crate::system::System;
 use faer::Mat;
 use std::f64::consts::TAU;
 
@@ -59,7 +58,7 @@ pub(super) fn reduced_check(
     few: &dyn Fn(&str, usize) -> Result<Vec<f64>>,
     observer: &dyn Observer,
 ) -> Result<ReducedCheck> {
-    let linear = linearised(reduced, full_system, steady);
+    let linear = reduced.linearised(full_system, steady);
     let (system, own) = match &linear {
         Some((system, own)) => (system, own.clone()),
         None => (&reduced.system, reduced.steady(steady)),
@@ -87,43 +86,6 @@ pub(super) fn reduced_check(
         growth: growths.or_else(|| nearest.and_then(growth)),
         motion: full.map(|full| motion(steady, full, few)).transpose()?,
     })
-}
-
-/// A reduced model whose contacts are apart from it, with K_c and C_c of these between its coordinates in their place.
-fn linearised(reduced: &Reduced, full: &System, steady: &SteadySliding) -> Option<(System, SteadySliding)> {
-    let contacts = reduced.contacts.as_ref()?;
-    let n = reduced.basis.ncols();
-    let points: Vec<_> = contacts.pairs.iter().flat_map(|pair| &*pair.points).collect();
-    let blocks = linearize(full, steady).blocks;
-    let seen = Mat::from_fn(3 * blocks.len(), n, |i, j| {
-        directions(points[blocks[i / 3].point])[i % 3].dot(contacts.basis.col_as_slice(j))
-    });
-    let between = |part: &dyn Fn(&ContactBlock) -> [[f64; 3]; 3]| {
-        let forces = Mat::from_fn(seen.nrows(), n, |i, j| {
-            let row = part(&blocks[i / 3])[i % 3];
-            (0..3).map(|c| row[c] * seen[(i - i % 3 + c, j)]).sum::<f64>()
-        });
-        gram(seen.as_ref(), forces.as_ref())
-    };
-    let mut stiffness = between(&|block| block.stiffness);
-    let mut damping = between(&|block| block.damping);
-    if let Some(rest) = &reduced.system.coupling {
-        for (i, row) in rest.directions.iter().enumerate() {
-            for (j, column) in rest.directions.iter().enumerate() {
-                for ((a, x), (b, y)) in row.iter().flat_map(|x| column.iter().map(move |y| (x, y))) {
-                    stiffness[(a, b)] += x * rest.stiffness[(i, j)] * y;
-                    damping[(a, b)] += x * rest.damping[(i, j)] * y;
-                }
-            }
-        }
-    }
-    let directions = (0..n).map(|k| SparseVector::from_entries([(k, 1.0)])).collect();
-    let system = System {
-        coupling: Some(Coupling { directions, stiffness, damping, skew: None }),
-        ..reduced.system.clone()
-    };
-    let own = SteadySliding { approach: Vec::new(), points: Vec::new(), ..reduced.steady(steady) };
-    Some((system, own))
 }
 
 fn larger(a: &Deviation, b: &Deviation) -> std::cmp::Ordering {

@@ -4,14 +4,17 @@ use super::super::*;
 use super::{blow, damped, plan, schemes};
 use crate::bounds::{Origin::*, within};
 use crate::contact::{Bristle, Coulomb, NormalLaw, SlidingLaw};
-use crate::equilibrium::samples::{pair, point, skew_parts, structure, vector};
+use crate::equilibrium::samples::{fluttering_bar, skew_parts, vector};
 use crate::equilibrium::{SteadyOptions, SteadySliding, solve_steady};
+use crate::linalg::c64;
 use crate::linalg::multivector::gram;
-use crate::linalg::sparse::{add_scaled, times};
+use crate::linalg::sparse::times;
 use crate::modal::samples::dense_modes;
-use crate::reduction::{Reduced, reduce};
-use crate::system::{Closing, System};
+use crate::reduction::{ManyPoints, Reduced, reduce};
+use crate::stability::complex_modes;
+use crate::system::System;
 use faer::Mat;
+use std::f64::consts::TAU;
 
 /// What acts in a run.
 #[derive(Clone, Copy)]
@@ -92,52 +95,24 @@ fn contacts_apart_from_a_system_move_it_as_those_in_it() {
     assert!(counted[0] > 100 && counted[1] > 100, "{counted:?}");
 }
 
-/// A bar of 60 masses on a belt, three contact points to each: it bends across (y) and stretches along (x), and touches below its axis,
-/// so that t is x − h y′; the face is inclined, so that friction and pressure drive each other: the bar flutters. Damped in proportion to stiffness and mass.
-fn bar(load: f64) -> System {
-    const MASSES: usize = 60;
-    let chain = |i: usize, j: usize, link: f64, ground: f64| match i.abs_diff(j) {
-        0 => link * if i == 0 || i == MASSES - 1 { 1.0 } else { 2.0 } + ground,
-        1 => -link,
-        _ => 0.0,
-    };
-    let stiffness = |i: usize, j: usize| match (i < MASSES, j < MASSES) {
-        (true, true) => chain(i, j, 2000.0, 1.0),
-        (false, false) => chain(i - MASSES, j - MASSES, 5000.0, 20.0),
-        _ => 0.0,
-    };
-    let mut structure = structure(2 * MASSES, |i, j| f64::from(i == j), stiffness);
-    structure.damping.viscous =
-        Some(add_scaled(&[(2e-4, &structure.stiffness), (0.02, &structure.mass)]).into());
-    let points = (0..3 * (MASSES - 1)).map(|p| {
-        let (node, part) = (p / 3, (p % 3) as f64 / 3.0 + 1.0 / 6.0);
-        let between = |first: usize| [(first + node, 1.0 - part), (first + node + 1, part)];
-        let slope = [(node, 2.0), (node + 1, -2.0)];
-        let across = [between(0).map(|(i, v)| (i, -v)), between(MASSES).map(|(i, v)| (i, 0.2 * v))].concat();
-        let along = between(MASSES).into_iter().chain(slope).collect::<Vec<_>>();
-        point(0.0, 1.0, vector(&across), vector(&along), vector(&[]))
-    });
-    let law = SlidingLaw::new(
-        NormalLaw { stiffness: 60.0, cubic_stiffness: 1e6, damping: 0.0, bilateral: false },
-        Coulomb { mu0: 0.3 },
-        1e-3,
-    );
-    let pairs = vec![pair(points.collect(), law, Closing::Load(load), 0.02)];
-    System { structure, pairs, load: vec![0.0; 2 * MASSES], prestress: None, coupling: None }
-}
-
 /// The deflections of a reduced model under random contact forces are as near as it states, and so is its motion through lift-off.
 #[test]
 fn a_model_reduced_with_its_contacts_apart_moves_like_the_full_one() {
     let mut sizes = Vec::new();
     for tolerance in [0.3, 0.1] {
-        let system = bar(9.0);
+        let system = fluttering_bar(9.0, 3);
         let steady = solve_steady(&system, &SteadyOptions::default(), &()).unwrap();
         let modes = dense_modes(&system, 24);
         let direction = vector(&[(20, 4.0), (21, 4.0), (40, -6.0), (90, 3.0)]);
         let push = Push { direction, course: Pulse::HalfSine { begin: 0.01, duration: 0.2 } };
-        let reduced =
-            reduce(&system, &steady, &modes, std::slice::from_ref(&push.direction), Some(tolerance)).unwrap();
+        let reduced = reduce(
+            &system,
+            &steady,
+            &modes,
+            std::slice::from_ref(&push.direction),
+            Some(many(&system, &steady, tolerance)),
+        )
+        .unwrap();
         let contacts = reduced.contacts.as_ref().unwrap();
         assert!(contacts.error.largest <= tolerance, "{:?}", contacts.error);
         let [off, opened] = apart(&system, &steady, &reduced, push);
@@ -151,9 +126,10 @@ fn a_model_reduced_with_its_contacts_apart_moves_like_the_full_one() {
 /// A run that stopped goes on as if it had not, with the tangent that it had.
 #[test]
 fn a_reduced_march_that_was_put_away_goes_on_bit_for_bit() {
-    let system = bar(9.0);
+    let system = fluttering_bar(9.0, 3);
     let steady = solve_steady(&system, &SteadyOptions::default(), &()).unwrap();
-    let reduced = reduce(&system, &steady, &dense_modes(&system, 16), &[], Some(0.1)).unwrap();
+    let reduced =
+        reduce(&system, &steady, &dense_modes(&system, 16), &[], Some(many(&system, &steady, 0.1))).unwrap();
     let (small, contacts) = (reduced.steady(&steady), reduced.contacts.as_ref().unwrap());
     let blow = Push { direction: reduced.form(&vector(&[(20, 4.0), (21, 4.0)])), ..blow() };
     let model = TransientModel::reduced(&reduced.system, (&contacts.pairs, &contacts.basis), &small).unwrap();
@@ -175,6 +151,62 @@ fn a_reduced_march_that_was_put_away_goes_on_bit_for_bit() {
     a.put_march(&whole);
     b.put_march(&again);
     assert!(a == b && middle.arrays.contains_key("slopes"));
+}
+
+/// What a reduced model of the bar holds: with its complex modes up to 4 Hz.
+fn many(system: &System, steady: &SteadySliding, tolerance: f64) -> ManyPoints {
+    let modes = complex_modes(system, steady, &dense_modes(system, 120), [0.0, 4.0], &()).unwrap();
+    ManyPoints { tolerance, linear: false, shapes: modes.parts(), states: Vec::new() }
+}
+
+/// A small motion grows and turns in a reduced model as the complex eigenvalue of the full one says, but for what the trapezoidal rule does to any
+/// λ: ζ = (1 + λΔt/2)/(1 − λΔt/2) a step. It is 1e8 times smaller than the deflections of steady sliding.
+#[test]
+fn flutter_of_a_reduced_model_grows_as_the_complex_eigenvalue_says() {
+    const SMALL: f64 = 1e-9;
+    for load in [4.0, 9.0, 30.0] {
+        let system = fluttering_bar(load, 3);
+        let steady = solve_steady(&system, &SteadyOptions::default(), &()).unwrap();
+        let all = complex_modes(&system, &steady, &dense_modes(&system, 120), [0.0, 4.0], &()).unwrap().modes;
+        let mode = all.iter().max_by(|a, b| a.eigenvalue.re.total_cmp(&b.eigenvalue.re)).unwrap();
+        let lambda = mode.eigenvalue;
+        let wanted = many(&system, &steady, 0.3);
+        let reduced = reduce(&system, &steady, &dense_modes(&system, 30), &[], Some(wanted)).unwrap();
+        let (small, contacts) = (reduced.steady(&steady), reduced.contacts.as_ref().unwrap());
+        let model =
+            TransientModel::reduced(&reduced.system, (&contacts.pairs, &contacts.basis), &small).unwrap();
+        let model = model.balanced(&small);
+        let part = |of: fn(&c64) -> f64| reduced.coordinates(&mode.right.iter().map(of).collect::<Vec<_>>());
+        let shape: Vec<c64> =
+            part(|z| z.re).into_iter().zip(part(|z| z.im)).map(|(re, im)| c64::new(re, im)).collect();
+        let step = TAU / lambda.im / 50.0;
+        let half = lambda * (0.5 * step);
+        let expected = ((half + 1.0) / (-half + 1.0)).ln() / step;
+        // c of u = u₀ + Re(c φ), u̇ = Re(c λ φ), by the coordinate that moves most.
+        let k = (0..shape.len()).max_by(|a, b| shape[*a].norm().total_cmp(&shape[*b].norm())).unwrap();
+        let (p, q) = (shape[k], lambda * shape[k]);
+        let determinant = -p.re * q.im + p.im * q.re;
+        let mut amplitudes = Vec::new();
+        let from = State::steady(&model, &small).disturbed(&model, lambda, &shape, SMALL);
+        march(&model, from, &plan(Scheme::TRAPEZOIDAL, step, 300), &(), &mut |moment| {
+            let motion = &moment.state.motion;
+            let (u, v) = (motion[(k, 0)] - small.displacement[k], motion[(k, 1)]);
+            amplitudes
+                .push(c64::new((-q.im * u + p.im * v) / determinant, (p.re * v - q.re * u) / determinant));
+            Ok(())
+        })
+        .unwrap();
+        // Whole periods, so that a tilt of the ellipse of (u, v) drops out.
+        let turned = amplitudes[250] / amplitudes[50];
+        let time = 200.0 * step;
+        let angle = turned.im.atan2(turned.re);
+        let near = ((expected.im * time - angle) / TAU).round();
+        let found = c64::new(turned.norm().ln(), angle + TAU * near) / time;
+        let (growth, frequency) = (found.re / expected.re - 1.0, found.im / expected.im - 1.0);
+        assert!(expected.re > 0.01 * expected.im, "{load}: {expected}");
+        assert!(within(growth.abs(), 1e-5, Discretisation), "{load}: {found} {expected}");
+        assert!(within(frequency.abs(), 1e-6, Discretisation), "{load}: {found} {expected}");
+    }
 }
 
 /// max |Vq − u|_M over max |u − u₀|_M of a run, of a reduced model and of the full one; and how often a point was open.
