@@ -76,7 +76,7 @@ declare! {
             .within(Bound::Included(band[1]), Bound::Unbounded)
             .or_by("1.5 times the upper end of `band`", (1.5 * band[1]).min(LARGEST)),
         /// Counts the unstable eigenvalues of the band, to certify that none was missed: always, never, or, when not said,
-        /// where its cost is small beside the eigenvalues.
+        /// where that is expected to take no more operations than the analysis.
         pub certify: Option<bool> = key::flag(false).optional(),
         /// Looks for the same modes again by a second, independent method on the full order.
         pub confirm: bool = key::flag(false),

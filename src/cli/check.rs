@@ -53,6 +53,14 @@ pub fn run(options: &CheckOptions, common: &Common) -> Result<u8> {
                 expected.fill as f64,
                 expected.modes
             ))?;
+            if let Some(count) = expected.count {
+                say(format!(
+                    "The count of the unstable modes is expected to take {:.0e} operations, about {:.0} s of one core, and {:.1} GiB of that.",
+                    count.operations(),
+                    count.seconds(),
+                    count.bytes() / f64::from(1 << 30)
+                ))?;
+            }
         }
     }
     Ok(SUCCESS)
@@ -88,6 +96,11 @@ fn as_json(options: &CheckOptions, prepared: &Prepared, warnings: &CaseWarnings)
             "bytes": expected.bytes,
             "factor_entries": expected.fill,
             "real_modes": expected.modes,
+            "certificate": expected.count.map(|count| json!({
+                "operations": count.operations(),
+                "seconds": count.seconds(),
+                "bytes": count.bytes(),
+            })),
         })),
     });
     if options.parameters {

@@ -9,6 +9,7 @@ use crate::error::{Error, Result};
 use crate::linalg::sparse::{add_scaled, sum_of_squares};
 use crate::memory::{Available, available};
 use crate::reduction::has_many_points;
+use crate::stability::CountSize;
 use crate::structure::{Model, Part, as_plate};
 use crate::system::System;
 use std::f64::consts::{PI, TAU};
@@ -60,6 +61,8 @@ pub struct ExpectedMemory {
     pub samples: f64,
     /// What contacts of the full model take of it in motion in time \[bytes\].
     pub full_motion: f64,
+    /// Sizes of the count of the unstable modes, where one is made.
+    pub count: Option<CountSize>,
 }
 
 impl ExpectedMemory {
@@ -88,10 +91,14 @@ impl ExpectedMemory {
                 fill = *fill as f64,
             ),
             format!(
-                "Take a coarser mesh, a lower `cea.basis_below`, `below` or `count`, {}{}{}or a machine with more memory",
+                "Take a coarser mesh, a lower `cea.basis_below`, `below` or `count`, {}{}{}{}or a machine with more memory",
                 if self.left_vectors { "`cea.left_vectors = false`, " } else { "" },
                 if self.samples > 0.1 * self.bytes { "fewer `samples`, " } else { "" },
                 if self.full_motion > 0.1 * self.bytes { "`transient.model = \"reduced\"`, " } else { "" },
+                match self.count {
+                    Some(count) if count.bytes() > 0.1 * self.bytes => "`cea.certify = false`, ",
+                    _ => "",
+                },
             ),
         ))
     }
@@ -175,13 +182,32 @@ pub fn expected_memory(prepared: &Prepared, selection: Selection) -> Result<Opti
     let reduced_motion = if reduced { run.reduced_motion(&prepared.system) } else { 0.0 };
     let full = moves.is_some_and(|wanted| !reduced || wanted.compare_steps.map_or(!many, |steps| steps > 0));
     let full_motion = if full { run.full_motion(&prepared.system) } else { 0.0 };
-    let bytes = run.peak(kind) + skew + samples + reduced_motion.max(full_motion);
+    let count = complex.filter(|_| prepared.system.skew().is_none()).and_then(|cea| {
+        let directions = 3.0 * prepared.system.points().count() as f64;
+        let size = CountSize::expected(dofs, fill, symbolic.multiplications(), run.modes, directions);
+        let made = cea.certify.unwrap_or_else(|| size.within_the_analysis());
+        (made && directions > 0.0).then_some(size)
+    });
+    let bytes = run.peak(kind)
+        + skew
+        + samples
+        + reduced_motion.max(full_motion)
+        + count.map_or(0.0, |size| size.bytes());
     if dofs < LARGE.0 && bytes < LARGE.1 {
         return Ok(None);
     }
     let left_vectors =
         kind == AnalysisKind::Complex { left_vectors: true } && !selection.takes_left_vectors(case);
-    Ok(Some(ExpectedMemory { bytes, dofs, fill, modes: run.modes, left_vectors, samples, full_motion }))
+    Ok(Some(ExpectedMemory {
+        bytes,
+        dofs,
+        fill,
+        modes: run.modes,
+        left_vectors,
+        samples,
+        full_motion,
+        count,
+    }))
 }
 
 /// The analysis that takes the most memory.
@@ -325,6 +351,7 @@ mod tests {
             left_vectors: true,
             samples: 0.0,
             full_motion: 0.0,
+            count: None,
         };
         let by = "the machine's free memory";
         assert!(expected.check(&Available { bytes: 4_000_000_000, by }).is_ok());
@@ -341,6 +368,12 @@ mod tests {
         let other = ExpectedMemory { full_motion: 2e9, ..expected };
         let text = other.check(&Available { bytes: 1 << 30, by }).unwrap_err().to_string();
         assert!(text.contains("`transient.model = \"reduced\"`"), "{text}");
+        let counted = ExpectedMemory {
+            count: Some(CountSize::expected(100_000, 20_000_000, 1e10, 40.0, 3e3)),
+            ..expected
+        };
+        let text = counted.check(&Available { bytes: 1 << 30, by }).unwrap_err().to_string();
+        assert!(text.contains("`cea.certify = false`"), "{text}");
         assert_eq!(error.exit_code(), 1);
     }
 

@@ -269,20 +269,25 @@ impl<'a> Basis<'a> {
         new.subcols(0, done).to_owned()
     }
 
-    /// Puts E/τ-orthonormal combinations Z `mix` of the vectors added to the real modes in their place.
-    pub(super) fn combine_added(&mut self, mix: MatRef<'_, f64>) {
-        self.added = expand(self.added.as_ref(), mix);
-        let n_real = self.n_real();
-        let whole = beside_modes(n_real, mix);
+    /// The real modes and E/τ-orthonormal combinations Z `mix` of the vectors added to them.
+    pub(super) fn combined(&self, mix: MatRef<'_, f64>) -> Self {
+        let whole = beside_modes(self.n_real(), mix);
         let form = |a: &Mat<f64>| product(whole.transpose(), product(a.as_ref(), whole.as_ref()).as_ref());
-        self.mass = form(&self.mass);
-        self.damping = form(&self.damping);
-        self.stiffness = form(&self.stiffness);
-        self.hysteretic = self.hysteretic.as_ref().map(form);
-        self.skew = self.skew.as_ref().map(|parts| parts.each_ref().map(form));
-        self.interface = product(whole.transpose(), self.interface.as_ref());
-        self.sizes =
-            (0..whole.ncols()).map(|j| self.stiffness[(j, j)] + self.tau * self.mass[(j, j)]).collect();
+        let (mass, stiffness) = (form(&self.mass), form(&self.stiffness));
+        Basis {
+            operator: self.operator,
+            energy: OnceLock::new(),
+            tau: self.tau,
+            sizes: (0..whole.ncols()).map(|j| stiffness[(j, j)] + self.tau * mass[(j, j)]).collect(),
+            modes: self.modes,
+            added: expand(self.added.as_ref(), mix),
+            damping: form(&self.damping),
+            hysteretic: self.hysteretic.as_ref().map(form),
+            skew: self.skew.as_ref().map(|parts| parts.each_ref().map(form)),
+            interface: product(whole.transpose(), self.interface.as_ref()),
+            mass,
+            stiffness,
+        }
     }
 
     /// Adds vectors and their projections.

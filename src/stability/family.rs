@@ -281,7 +281,7 @@ impl<'f> Family<'f> {
             false => self.snapshots.reduce(&self.projection, tau, n_real),
         };
         if let Some(mix) = combinations {
-            self.basis.combine_added(mix.as_ref());
+            self.basis = self.basis.combined(mix.as_ref());
             self.project()?;
         }
         let most = if self.basis.len() < before { self.basis.len() - 1 } else { before / 2 };

@@ -40,7 +40,7 @@ mod tests;
 
 pub use advice::PointRates;
 pub use band::Band;
-pub use certificate::{Certificate, CloseCall, SLOWEST_GROWTH, certified_modes};
+pub use certificate::{Certificate, CloseCall, CountSize, SLOWEST_GROWTH, certified_modes};
 pub use changed::{StiffnessChange, changed_eigenvalues};
 pub use closed::ClosedContact;
 pub use complex::{complex_eigenvalues, complex_modes};

@@ -15,7 +15,8 @@
 //!    determinant winds like the small one. The margin is the smallest 1/ρ.
 //!    Of a large interface d costs too much: the eigenvalues of the reduced model are then computed and counted one by
 //!    one, their number inside is proven from what is left of the matrix in their coordinates, and the same coordinates
-//!    bound ρ ([`spectrum`]).
+//!    bound ρ ([`spectrum`]). Where contact has more directions than there are real modes, that is done in the part of the basis that
+//!    the modes of the band need ([`narrow`]), and in the whole where that proves nothing.
 //! 3. *Beyond the region.* Nothing in the band grows faster than R ([`beyond`]), oscillating or not. Where that is not shown, or the
 //!    region up to R could not be counted, R is the top of the band, 2π f, and that faster growth is not excluded is stated.
 //!
@@ -31,6 +32,11 @@ mod contour;
 mod count;
 mod damping;
 mod determinant;
+mod far;
+mod few_rows;
+mod largest;
+mod missed;
+mod narrow;
 mod pencil;
 mod reduced;
 mod region;
@@ -39,6 +45,7 @@ mod rows;
 mod spectrum;
 #[cfg(test)]
 mod tests;
+mod work;
 
 use super::ComplexModes;
 use super::Structural;
@@ -62,6 +69,10 @@ use reduced::ReducedModel;
 use region::CountedRegion;
 use spectrum::ReducedSpectrum;
 use std::f64::consts::TAU;
+pub use work::CountSize;
+
+/// Operations of a count that is announced with them.
+const LONG: f64 = 1e12;
 
 /// How often the contour is moved a little when an eigenvalue is too near for it.
 const ATTEMPTS: usize = 3;
@@ -73,15 +84,11 @@ const LONG_CONTOUR: f64 = 5e9;
 /// weak, it needs ever more points, and a richer basis costs less.
 const PATIENCE: f64 = 3e11;
 
-/// The part of the operations of the eigenvalues that a certificate may take whatever `most_work` is.
-const SHARE: f64 = 0.5;
-
 /// [`complex_modes`](super::complex_modes) of the band, all of them as they are counted, and the count of those that grow.
 ///
 /// The caller compares: [`Certificate::agrees`] is false when a mode was missed. Where the modes cannot be counted, such
 /// as with an eigenvalue on the contour wherever it is drawn, or where that is expected to take more than `most_work`
-/// floating-point operations (infinity for no limit) and more than half of those of the eigenvalues, there is no certificate
-/// but a warning.
+/// floating-point operations (infinity for no limit) and more than those of the analysis, there is no certificate but a warning.
 ///
 /// # Errors
 /// Those of [`complex_modes`](super::complex_modes).
@@ -103,14 +110,22 @@ pub fn certified_modes<'a>(
             not_countable(modes, broken);
             return None;
         }
-        let work = expected_work(&analysis, modes).min(work_by_spectrum(&analysis));
-        let most_work = most_work.max(SHARE * eigenvalue_work(&analysis, modes));
+        let size = size(&analysis);
+        let work = expected_work(&analysis, modes).min(size.operations());
+        let of_analysis = size.operations_of_analysis(modes.refinements);
+        let most_work = most_work.max(work::SHARE * of_analysis);
         if work > most_work {
             modes.warnings.push(format!(
-                "The unstable modes were not counted: with {} directions of contact that would take about {work:.0e} operations; `cea.certify = true` counts them all the same",
+                "The unstable modes were not counted: with {} directions of contact that would take about {work:.0e} operations, \
+                 the analysis took {of_analysis:.0e}; `cea.certify = true` counts them all the same",
                 directions(&analysis)
             ));
             return None;
+        }
+        if work >= LONG {
+            observer.note(&format!(
+                "The count of the unstable modes is expected to take about {work:.0e} operations"
+            ));
         }
         observer.begin("certificate", None);
         let certificate = count(&analysis, modes, most_work);
@@ -199,17 +214,17 @@ fn expected_work(analysis: &CompletedAnalysis<'_>, modes: &ComplexModes) -> f64 
     30.0 * (modes.modes.len() + 10) as f64 * work_of_a_point(analysis)
 }
 
-/// Expected work of a count from the spectrum of the reduced model.
-fn work_by_spectrum(analysis: &CompletedAnalysis<'_>) -> f64 {
-    spectrum::work(analysis.basis.len(), directions(analysis))
-}
-
-/// About the floating-point operations that the eigenvalues took: the dense problem of the basis once and after each refinement,
-/// 25 (2m)³ with vectors (G. H. Golub & C. F. Van Loan, Matrix Computations, QR algorithm), the factor and a solution a vector.
-fn eigenvalue_work(analysis: &CompletedAnalysis<'_>, modes: &ComplexModes) -> f64 {
-    let (m, symbolic) = (analysis.basis.len() as f64, analysis.factor.symbolic());
-    let dense = 25.0 * (2.0 * m).powi(3) * (modes.refinements + 1) as f64;
-    dense + symbolic.multiplications() + 4.0 * symbolic.fill() as f64 * m
+/// The sizes of a count from the spectrum.
+fn size(analysis: &CompletedAnalysis<'_>) -> CountSize {
+    let symbolic = analysis.factor.symbolic();
+    CountSize {
+        dofs: analysis.operator.n() as f64,
+        fill: symbolic.fill() as f64,
+        multiplications: symbolic.multiplications(),
+        real_modes: analysis.basis.n_real() as f64,
+        basis: analysis.basis.len() as f64,
+        directions: directions(analysis) as f64,
+    }
 }
 
 /// The count agrees, and yet is no proof.
@@ -233,18 +248,36 @@ fn weak(certificate: &Certificate) -> String {
     )
 }
 
-/// The count along the contour, or from the spectrum where that is long: then the contour is the last resort.
+/// The count along the contour, or from the spectrum where that is long, of a narrow basis first where contact has many directions: the
+/// contour is the last resort.
 fn count(analysis: &CompletedAnalysis<'_>, modes: &ComplexModes, most_work: f64) -> Result<Certificate> {
     let contour_work = expected_work(analysis, modes);
-    if contour_work <= LONG_CONTOUR.max(work_by_spectrum(analysis)) {
+    if contour_work <= LONG_CONTOUR.max(work::dense(analysis.basis.len() as f64)) {
         return count_by(Way::Contour, analysis, modes, most_work);
     }
-    let certificate = count_by(Way::Spectrum, analysis, modes, most_work);
-    match certificate {
-        Ok(certificate) if certificate.margin > 1.0 => Ok(certificate),
-        weak if contour_work > most_work.min(PATIENCE) => weak,
-        weak => count_by(Way::Contour, analysis, modes, most_work).or(weak),
+    let proves = |count: &Result<Certificate>| count.as_ref().is_ok_and(|count| count.margin > 1.0);
+    let size = size(analysis);
+    // A richer basis, then the contour, where that is within the limit.
+    let mut further = vec![(Way::Contour, contour_work, most_work.min(PATIENCE))];
+    let mut best = match size.is_narrow() {
+        true => {
+            further.insert(0, (Way::Spectrum, size.operations_in_whole_basis(), most_work));
+            let narrow = narrow::narrow(analysis)?;
+            let analysis = CompletedAnalysis { basis: &narrow, ..*analysis };
+            count_by(Way::Spectrum, &analysis, modes, most_work)
+        }
+        false => count_by(Way::Spectrum, analysis, modes, most_work),
+    };
+    for (way, ..) in further.into_iter().filter(|(_, work, most)| work <= most) {
+        if proves(&best) {
+            break;
+        }
+        let next = count_by(way, analysis, modes, most_work);
+        if proves(&next) || best.is_err() {
+            best = next;
+        }
     }
+    best
 }
 
 /// How the eigenvalues of the reduced model are counted.

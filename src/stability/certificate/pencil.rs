@@ -343,7 +343,7 @@ impl<'a> Pencil<'a> {
             own += (compliance + beta) * (size + size_change).powi(2);
             y_change += (compliance * size_change + beta * (size + size_change)) * self.squares[i].sqrt();
         }
-        let y = size(&y) + y_change + remainder.missed_response;
+        let y = size(&y) + y_change + remainder.missed.response;
         let stiff = (state.stiff + h * state.damped) / (1.0 - change);
         q * (own + stiff * y * y)
     }

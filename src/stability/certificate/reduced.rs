@@ -12,7 +12,7 @@ use std::f64::consts::TAU;
 /// BᵀQ(s)B = s² + diag(s a + θ + i h) + s C_r + i H_r + W_B κ(s) W_Bᵀ in the coordinates of the Ritz vectors B
 /// (BᵀMB = 1, BᵀKB = diag θ): the structure is a row of oscillators, and the interface acts between them.
 ///
-/// It does not depend on the numbers of the contact laws (κ), only on the directions in which contacts act.
+/// But for its remainder it does not depend on the numbers of the contact laws (κ), only on the directions in which contacts act.
 #[derive(Debug)]
 pub(crate) struct ReducedModel {
     /// The oscillators, ascending in θ.
@@ -24,7 +24,9 @@ pub(crate) struct ReducedModel {
     pub(super) active: Vec<usize>,
     /// W_B of the active directions, m × r.
     pub(super) interface: Mat<f64>,
-    /// Coupling to the complement of the basis; `None` when the basis is the whole space.
+    /// The Ritz vectors in the basis, one a column.
+    pub(super) ritz: Mat<f64>,
+    /// Coupling to the complement of the basis; `None` when the basis is the whole space, or when it is not asked for.
     pub(super) remainder: Option<Remainder>,
     /// Whether C and H are known to dissipate.
     pub(super) dissipative: bool,
@@ -44,6 +46,15 @@ pub(super) struct Oscillator {
 impl ReducedModel {
     /// Brings the projections of the analysis to diagonal form and bounds what they leave out.
     pub(crate) fn new(analysis: &CompletedAnalysis<'_>) -> Result<Self> {
+        ReducedModel::of(analysis, true)
+    }
+
+    /// The projections of the analysis in diagonal form.
+    pub(super) fn alone(analysis: &CompletedAnalysis<'_>) -> Result<Self> {
+        ReducedModel::of(analysis, false)
+    }
+
+    fn of(analysis: &CompletedAnalysis<'_>, bounded: bool) -> Result<Self> {
         let (operator, basis) = (&analysis.operator, &analysis.basis);
         let top = TAU * analysis.band_hz[1];
         let parts = DampingParts::new(analysis);
@@ -69,12 +80,14 @@ impl ReducedModel {
         let active = operator.interface.active(top);
         let w = Mat::from_fn(basis.len(), active.len(), |i, j| basis.interface[(i, active[j])]);
         let lowest = theta.first().copied().unwrap_or(0.0);
-        let (indefinite, dissipative) = super::remainder::dissipation(analysis, &parts, lowest);
         let whole = basis.len() == operator.n() || analysis.complete_below == f64::INFINITY;
-        let remainder = if whole {
-            None
-        } else {
-            Some(Remainder::new(analysis, &parts, &theta, &x, &active, indefinite)?)
+        let (indefinite, dissipative) = match bounded {
+            true => super::remainder::dissipation(analysis, &parts, lowest),
+            false => (0.0, false),
+        };
+        let remainder = match bounded && !whole {
+            true => Some(Remainder::new(analysis, &parts, &theta, &x, &active, indefinite)?),
+            false => None,
         };
         Ok(ReducedModel {
             oscillators,
@@ -82,6 +95,7 @@ impl ReducedModel {
             coupled_loss: parts.lossy.as_ref().map(small),
             active,
             interface: product(x.transpose(), w.as_ref()),
+            ritz: x,
             remainder,
             dissipative,
         })

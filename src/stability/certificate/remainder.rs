@@ -13,13 +13,15 @@
 //!
 //! with D_B the inverse of the structure's part of Q_B and N = I + W_BᵀD_BW_B κ. Where ρ = q ‖E‖ < 1 (‖·‖ relative to A
 //! on both sides) P_ZZ − tE is regular for every t in \[0, 1\], so that det Q and det Q_B wind alike. The norms need
-//! S = ZᵀF (ZᵀAZ)⁻¹FᵀZ = Fᵀ(A⁻¹ − B(BᵀAB)⁻¹Bᵀ)F of the columns F = \[MB DB H_rB W\] only. As A⁻¹ − B(BᵀAB)⁻¹Bᵀ takes AB
+//! S = ZᵀF (ZᵀAZ)⁻¹FᵀZ = Fᵀ(A⁻¹ − B(BᵀAB)⁻¹Bᵀ)F of the columns F = \[MB DB H_rB W\] only, of W in many directions of its images
+//! W κ W_Bᵀ and W κᵀ W_Bᵀ ([`FewRows`]) and of ‖W_Z κ W_Zᵀ‖ ([`missed`](super::missed)). As A⁻¹ − B(BᵀAB)⁻¹Bᵀ takes AB
 //! to zero, F may first lose what the real modes Φ make of it: with F' = F − AΦ diag(ΦᵀAΦ)⁻¹ΦᵀF nothing small is lost in what
 //! is resonant, and S = F'ᵀA⁻¹F' − F'ᵀB(BᵀAB)⁻¹BᵀF' is half a block solve ([`compliances`]) less a small matrix. What rounding
 //! may hide in it is measured (`Probes`) and added.
 
 use super::damping::DampingParts;
-use super::rows::ColumnBlock;
+use super::few_rows::{FewRows, ImageKind};
+use super::missed::{DirectionGroup, Missed};
 use crate::dynamics::{Damper, DamperPart};
 use crate::error::Result;
 use crate::linalg::dense::{product, symmetric_eigen};
@@ -46,11 +48,9 @@ pub(super) struct Remainder {
     pub(super) indefinite: f64,
     /// τ of γ \[1/s²\].
     pub(super) tau: f64,
-    /// W_Zᵀ of the active directions (r × f), each times the root of its size: what the basis misses of the static
-    /// responses to the interface.
-    pub(super) missed: Mat<f64>,
-    /// ‖W_Z‖.
-    pub(super) missed_response: f64,
+    /// Those of (W_Z κ W_Bᵀ)ᵀ and of W_B κ W_Zᵀ.
+    pub(super) contact: [Vec<(CouplingFactor, Mat<f64>)>; 2],
+    pub(super) missed: Missed,
 }
 
 /// s² + linear · s + constant, or s.
@@ -87,11 +87,8 @@ impl Remainder {
         let (m, first) = (basis.len(), basis.n_real());
         let top = TAU * analysis.band_hz[1];
         let beyond = m - first;
-        // Of one size, so that the smallest are not lost in the rounding of the largest: \[top MB, DB, H_rB/top, W\]. The
-        // last three have entries in a few rows, and a few columns span them.
-        let few = of_few_rows(analysis, parts, active, top);
-        let behind = few.values.ncols();
-        let (few, coefficients) = few.spanned();
+        // Of one size, so that the smallest are not lost in the rounding of the largest: \[top MB, DB, H_rB/top, …\].
+        let FewRows { columns: few, images, directions } = FewRows::new(analysis, parts, active);
         let f = beyond + few.values.ncols();
         let mut forces = Mat::zeros(operator.n(), f);
         for (start, width) in panels(0..beyond) {
@@ -115,33 +112,48 @@ impl Remainder {
         drop(a);
         let mut rest = share.subcols_mut(beyond, f - beyond);
         rest -= product(small.subcols(0, first), taken.as_ref());
-        let probes = Probes::new(analysis, forces.as_ref());
+        let combinations = Probes::combinations(f);
+        let probes = Probes::new(analysis, expand(forces.as_ref(), combinations.as_ref()));
         let mut square = compliances(analysis.factor, forces.as_mut());
         drop(forces);
-        let rounding = probes.error(&square);
+        let rounding = probes.error(&combinations, &product(square.as_ref(), combinations.as_ref()));
         // BᵀAB = diag(θ − σ) for the Ritz vectors.
-        let seen = product(x.transpose(), share.as_ref());
-        let weighted = Mat::from_fn(m, f, |i, j| seen[(i, j)] / (theta[i] - shift));
-        square -= product(seen.transpose(), weighted.as_ref());
+        let ritz = RitzPairs { x, distances: theta.iter().map(|theta| theta - shift).collect() };
+        square -= product(share.transpose(), ritz.solution(&share).as_ref());
         let (values, vectors) = symmetric_eigen(square.as_ref())?;
-        // A root of it, one row a column of F, made larger by its rounding: those of the few directions represent all that
-        // they span.
+        // A root of it, one row a column of F, made larger by its rounding: those of the few rows represent all that they span.
         let size = |value: f64| (value.max(0.0) + rounding).sqrt();
-        let of_few = Mat::from_fn(f, f, |i, j| vectors[(i, j)] * size(values[j]));
-        let spanned = product(coefficients.transpose(), of_few.as_ref().subrows(beyond, f - beyond));
-        let root = Root { of_few, spanned, beyond };
-        let all = beyond + behind;
-        let missed = Mat::from_fn(active.len(), f, |i, j| root.at(all - active.len() + i, j));
-        let terms = root.terms(analysis, parts, x);
-        let (sizes, _) = symmetric_eigen(product(missed.as_ref(), missed.transpose()).as_ref())?;
+        let root = Mat::from_fn(f, f, |i, j| vectors[(i, j)] * size(values[j]));
+        let of_few = root.as_ref().subrows(beyond, f - beyond);
+        let inertia = Mat::from_fn(m, f, |i, j| if i < first { 0.0 } else { root[(i - first, j)] / top });
+        let in_ritz = |rows: MatRef<'_, f64>| product(x.transpose(), rows);
+        let mut terms = vec![(of_mass(analysis), in_ritz(inertia.as_ref()))];
+        let mut contact = [Vec::new(), Vec::new()];
+        for image in images {
+            let rows = product(image.coefficients.transpose(), of_few);
+            let term = (image.factor, in_ritz(rows.as_ref()));
+            match image.kind {
+                ImageKind::Damping => terms.push(term),
+                ImageKind::Interface { transposed } => contact[usize::from(transposed)].push(term),
+            }
+        }
+        let groups = DirectionGroup::of(analysis, active);
+        let sizes = match &directions {
+            Some(coefficients) => {
+                let all = product(coefficients.transpose(), of_few);
+                let of = |group: &DirectionGroup| group.largest_of_rows(active, all.as_ref());
+                groups.iter().map(of).collect::<Result<Vec<f64>>>()?
+            }
+            None => DirectionGroup::largest(&groups, analysis, &ritz),
+        };
         Ok(Remainder {
             complete_below: analysis.complete_below,
             shift,
             terms,
+            contact,
             indefinite,
             tau: top * top,
-            missed,
-            missed_response: sizes.last().map_or(0.0, |s| s.max(0.0).sqrt()),
+            missed: Missed::new(analysis, &sizes),
         })
     }
 
@@ -159,79 +171,39 @@ impl Remainder {
     }
 }
 
-/// \[DB, H_rB/top, W\], W of the `active` directions with the root of its size: the columns of F with entries in a few rows.
-fn of_few_rows(
-    analysis: &CompletedAnalysis<'_>,
-    parts: &DampingParts,
-    active: &[usize],
-    top: f64,
-) -> ColumnBlock {
-    let sizes = analysis.operator.interface.sizes(top);
-    let scales: Vec<f64> = active.iter().map(|d| sizes[*d].sqrt()).collect();
-    let mut few = directions(analysis, active, &scales);
-    for (image, scale) in [(&parts.lossy, 1.0 / top), (&parts.damped, 1.0)] {
-        if let Some(image) = image {
-            let values = &image.values * faer::Scale(scale);
-            few = ColumnBlock { rows: image.rows.clone(), values }.beside(&few);
-        }
+/// s² + (α + βσ_A) s + σ_A + i(α_h + β_hσ_A), which multiplies ZᵀMB in Γ.
+fn of_mass(analysis: &CompletedAnalysis<'_>) -> CouplingFactor {
+    let Damper { viscous, loss, .. } = &analysis.operator.dampers[0];
+    let [(alpha, beta), (alpha_h, beta_h)] =
+        [viscous, loss].map(|part| (part.split.mass_factor, part.split.stiffness_factor));
+    let shift = analysis.shift;
+    CouplingFactor {
+        square: 1.0,
+        linear: alpha + beta * shift,
+        constant: c64::new(shift, alpha_h + beta_h * shift),
     }
-    few
 }
 
-/// A root of FᵀA⁻¹F beyond the basis, one row a column of F.
-struct Root {
-    /// Of the columns of MB and of those that span the few rows.
-    of_few: Mat<f64>,
-    /// Of the columns with few rows.
-    spanned: Mat<f64>,
-    /// How many columns MB has.
-    beyond: usize,
+/// Ritz vectors x in the basis, with bᵀAb of each.
+pub(super) struct RitzPairs<'a> {
+    pub(super) x: &'a Mat<f64>,
+    pub(super) distances: Vec<f64>,
 }
 
-impl Root {
-    fn at(&self, row: usize, j: usize) -> f64 {
-        if row < self.beyond { self.of_few[(row, j)] } else { self.spanned[(row - self.beyond, j)] }
-    }
-
-    /// [`Remainder::terms`], with the Ritz vectors `x` in the basis.
-    fn terms(
-        &self,
-        analysis: &CompletedAnalysis<'_>,
-        parts: &DampingParts,
-        x: &Mat<f64>,
-    ) -> Vec<(CouplingFactor, Mat<f64>)> {
-        let (basis, shift) = (&analysis.basis, analysis.shift);
-        let (m, first, f) = (basis.len(), basis.n_real(), self.of_few.ncols());
-        let top = TAU * analysis.band_hz[1];
-        let Damper { viscous, loss, .. } = &analysis.operator.dampers[0];
-        let [(alpha, beta), (alpha_h, beta_h)] =
-            [viscous, loss].map(|part| (part.split.mass_factor, part.split.stiffness_factor));
-        let of_mass = CouplingFactor {
-            square: 1.0,
-            linear: alpha + beta * shift,
-            constant: c64::new(shift, alpha_h + beta_h * shift),
-        };
-        let of_damping = CouplingFactor { square: 0.0, linear: 1.0, constant: c64::new(0.0, 0.0) };
-        let of_loss = CouplingFactor { square: 0.0, linear: 0.0, constant: c64::new(0.0, 1.0) };
-        // The rows of F that an image of the basis has, and the first vector that has one.
-        let mut start = self.beyond;
-        let inertia = Mat::from_fn(m, f, |i, j| if i < first { 0.0 } else { self.at(i - first, j) / top });
-        let mut images = vec![(of_mass, inertia)];
-        for (image, scale, kind) in [(&parts.damped, 1.0, of_damping), (&parts.lossy, top, of_loss)] {
-            if let Some(image) = image {
-                let rows = Mat::from_fn(m, f, |i, j| scale * self.at(start + i, j));
-                start += image.values.ncols();
-                images.push((kind, rows));
-            }
+impl RitzPairs<'_> {
+    /// (BᵀAB)⁻¹BᵀF, given BᵀF.
+    pub(super) fn solution(&self, share: &Mat<f64>) -> Mat<f64> {
+        let mut seen = product(self.x.transpose(), share.as_ref());
+        for j in 0..seen.ncols() {
+            seen.col_as_slice_mut(j).iter_mut().zip(&self.distances).for_each(|(x, d)| *x /= d);
         }
-        images.iter().map(|(kind, rows)| (*kind, product(x.transpose(), rows.as_ref()))).collect()
+        product(self.x.as_ref(), seen.as_ref())
     }
 }
 
 /// A few random combinations c of forces F, with cᵀFᵀA⁻¹Fc to the square of the rounding: a solution x ≈ A⁻¹f of f = Fc leaves
 /// r = f − Ax, and fᵀA⁻¹f = fᵀx + rᵀx + rᵀA⁻¹r. What rounding makes of r itself shows as an error, too.
-struct Probes {
-    combinations: Mat<f64>,
+pub(super) struct Probes {
     compliances: Vec<f64>,
 }
 
@@ -242,11 +214,15 @@ impl Probes {
     /// e/100 at least in one of four, but for once in three thousand times when it has rank one, and seldomer with more.
     const MARGIN: f64 = 100.0;
 
-    fn new(analysis: &CompletedAnalysis<'_>, forces: MatRef<'_, f64>) -> Self {
-        let CompletedAnalysis { operator, factor, shift, .. } = analysis;
+    /// Of so many forces.
+    pub(super) fn combinations(forces: usize) -> Mat<f64> {
         let mut random = Random::new();
-        let combinations = Mat::from_fn(forces.ncols(), Self::COUNT, |_, _| random.next());
-        let mut sum = expand(forces, combinations.as_ref());
+        Mat::from_fn(forces, Self::COUNT, |_, _| random.next())
+    }
+
+    /// Of the combined forces.
+    pub(super) fn new(analysis: &CompletedAnalysis<'_>, mut sum: Mat<f64>) -> Self {
+        let CompletedAnalysis { operator, factor, shift, .. } = analysis;
         let mut x = sum.clone();
         factor.solve_in_place(x.as_mut());
         let image =
@@ -254,30 +230,16 @@ impl Probes {
         let residual = &sum - image;
         sum += residual;
         let compliance = |j: usize| dot(sum.col_as_slice(j), x.col_as_slice(j));
-        Probes { combinations, compliances: (0..Self::COUNT).map(compliance).collect() }
+        Probes { compliances: (0..Self::COUNT).map(compliance).collect() }
     }
 
-    /// An upper estimate of the error of FᵀA⁻¹F in the 2-norm.
-    fn error(&self, square: &Mat<f64>) -> f64 {
-        let images = product(square.as_ref(), self.combinations.as_ref());
+    /// An upper estimate of the error of FᵀA⁻¹F in the 2-norm, given its products with the combinations.
+    pub(super) fn error(&self, combinations: &Mat<f64>, images: &Mat<f64>) -> f64 {
         let error = |j: usize| {
-            (dot(self.combinations.col_as_slice(j), images.col_as_slice(j)) - self.compliances[j]).abs()
+            (dot(combinations.col_as_slice(j), images.col_as_slice(j)) - self.compliances[j]).abs()
         };
         Self::MARGIN * (0..Self::COUNT).map(error).fold(0.0, f64::max)
     }
-}
-
-/// W of the `active` directions, each times the root of its size.
-fn directions(analysis: &CompletedAnalysis<'_>, active: &[usize], scales: &[f64]) -> ColumnBlock {
-    let all: Vec<_> = active.iter().map(|d| analysis.operator.interface.directions[*d]).collect();
-    let mut rows: Vec<usize> = all.iter().flat_map(|d| d.indices().iter().copied()).collect();
-    rows.sort_unstable();
-    rows.dedup();
-    let mut values = Mat::zeros(rows.len(), all.len());
-    for (j, (direction, scale)) in all.iter().zip(scales).enumerate() {
-        direction.iter().for_each(|(i, v)| values[(rows.partition_point(|r| *r < i), j)] = scale * v);
-    }
-    ColumnBlock { rows, values }
 }
 
 /// γ with C ≥ −γ(K + K_σ + τM) outside the basis, τ the square of the band's top, and whether C and H are known to be

@@ -18,12 +18,13 @@
 //! E = Q_ZB Q_B⁻¹ Q_BZ − W_Z κ W_Zᵀ, Q_ZB = Γ + W_Z κ W_Bᵀ.
 //!
 //! Q_ZB(s) x_k is a polynomial in s that all but vanishes at λ_k, as the basis was refined until it did: what is left out
-//! does not resonate with the modes that were found.
+//! does not resonate with the modes that were found. Those beyond the band are bounded all together ([`far`](super::far)).
 
 use super::contour::{Stopped, Winding};
+use super::far::Far;
 use super::reduced::ReducedModel;
 use super::region::CountedRegion;
-use super::remainder::Remainder;
+use super::remainder::{CouplingFactor, Remainder};
 use crate::dynamics::InterfaceTerm;
 use crate::error::{Error, Result};
 use crate::linalg::c64;
@@ -31,13 +32,6 @@ use crate::linalg::dense::product;
 use crate::linalg::lu::inverse_and_phase;
 use crate::linalg::unsymmetric::{complex_spectrum, spectrum};
 use faer::Mat;
-
-/// Floating-point operations for a basis of `m` vectors and `r` directions of contact: about 60 (2m)³ for the vectors, their inverse
-/// and the check, and 25 r³ for the bound on what the basis leaves out. Counts of 135 to 2,091 directions in bases of 121 to 241
-/// vectors took 4e9 to 6e9 of these a second, on one core.
-pub(super) fn work(m: usize, r: usize) -> f64 {
-    60.0 * (2.0 * m as f64).powi(3) + 25.0 * (r as f64).powi(3)
-}
 
 /// The eigenvalues of the reduced model, each with what it contributes to a bound on E.
 #[derive(Debug)]
@@ -49,13 +43,13 @@ pub(super) struct ReducedSpectrum<'a> {
     rests: Vec<[f64; 2]>,
     /// Q_ZB x_k and Q_ZBᵀ of z_k.
     reaches: [Vec<Reach>; 2],
-    /// Bounds on ‖W_Z k W_Zᵀ‖ and ‖W_Z c W_Zᵀ‖.
-    missed: [f64; 2],
+    /// The eigenvalues beyond the region.
+    far: Far,
 }
 
 /// The size of a vector p₀ + s p₁ + s² p₂, by the products pᵢᴴpⱼ.
 #[derive(Debug, Clone, Copy)]
-struct Reach {
+pub(super) struct Reach {
     /// pᵢᴴpⱼ.
     products: [[c64; 3]; 3],
     /// ‖pᵢ‖.
@@ -63,7 +57,7 @@ struct Reach {
 }
 
 /// Factors of p₀, p₁ and p₂, and their magnitudes.
-struct SpectrumWeights([c64; 3], [f64; 3]);
+pub(super) struct SpectrumWeights(pub(super) [c64; 3], [f64; 3]);
 
 impl SpectrumWeights {
     fn new(weights: [c64; 3]) -> Self {
@@ -71,29 +65,41 @@ impl SpectrumWeights {
     }
 
     /// Those of the value at `c`, the slope there, and the curvature.
-    fn at(c: c64) -> [Self; 3] {
+    pub(super) fn at(c: c64) -> [Self; 3] {
         let (zero, one) = (c64::new(0.0, 0.0), c64::new(1.0, 0.0));
         [[one, c, c * c], [zero, one, c * 2.0], [zero, zero, one]].map(SpectrumWeights::new)
     }
 }
 
 impl Reach {
-    fn new(products: [[c64; 3]; 3]) -> Self {
+    /// Of the columns `k` of p₀, p₁ and p₂.
+    fn of(powers: &[Mat<c64>; 3], k: usize) -> Self {
+        let dot = |i: usize, j: usize| -> c64 {
+            let (a, b) = (powers[i].col_as_slice(k), powers[j].col_as_slice(k));
+            a.iter().zip(b).map(|(a, b)| a.conj() * b).sum()
+        };
+        let products = [0, 1, 2].map(|i| [0, 1, 2].map(|j| dot(i, j)));
         Reach { products, sizes: [0, 1, 2].map(|i| products[i][i].re.sqrt()) }
     }
 
     /// ‖Σ wᵢ pᵢ‖, not less in spite of rounding.
-    fn size(&self, SpectrumWeights(weights, magnitudes): &SpectrumWeights) -> f64 {
-        let (mut square, mut terms) = (0.0, 0.0);
+    fn size(&self, of: &SpectrumWeights) -> f64 {
+        let SpectrumWeights(weights, magnitudes) = of;
+        let mut square = 0.0;
         for i in 0..3 {
             let term = magnitudes[i] * self.sizes[i];
             square += term * term;
-            terms += term;
             for j in 0..i {
                 square += 2.0 * (weights[i].conj() * self.products[i][j] * weights[j]).re;
             }
         }
-        (square.max(0.0) + 8.0 * f64::EPSILON * terms * terms).sqrt()
+        (square.max(0.0) + self.rounding(of)).sqrt()
+    }
+
+    /// What rounding may make of the square of the size.
+    pub(super) fn rounding(&self, SpectrumWeights(_, magnitudes): &SpectrumWeights) -> f64 {
+        let terms: f64 = (0..3).map(|i| magnitudes[i] * self.sizes[i]).sum();
+        8.0 * f64::EPSILON * terms * terms
     }
 
     /// A bound on the size within `h` of a point, whose weights are given.
@@ -106,29 +112,42 @@ impl Reach {
 const DISCS: usize = 1_000_000;
 /// The radius of a disc by the distance of its centre from the nearest eigenvalue: 1/|s − λ| is known within a quarter.
 const RADIUS: f64 = 0.2;
+/// Eigenvalues further from zero than this part of the top of the band are bounded all together.
+const FAR: f64 = 1.1;
 
-impl<'a> ReducedSpectrum<'a> {
-    /// The reduced model with the numbers of an interface, scaled for frequencies up to `top` \[rad/s\]; `sizes` are those
+/// A of the reduced model, as far as it is diagonal in the coordinates of its eigenvectors.
+pub(super) struct Decomposition {
+    /// Λ.
+    pub(super) values: Vec<c64>,
+    /// The row sums of |R| and of |F|.
+    rests: Vec<[f64; 2]>,
+    /// x_k, and z_k, one a column.
+    pub(super) right: Mat<c64>,
+    pub(super) left: Mat<c64>,
+}
+
+impl Decomposition {
+    /// That of the reduced model with the numbers of an interface, scaled for frequencies up to `top` \[rad/s\]; `sizes` are those
     /// of the operator's directions.
     pub(super) fn new(
-        model: &'a ReducedModel,
+        model: &ReducedModel,
         terms: &[InterfaceTerm],
         sizes: &[f64],
         top: f64,
     ) -> Result<Self> {
         let (m, r) = (model.oscillators.len(), model.active.len());
-        let place = |d: usize| model.active.iter().position(|a| *a == d);
+        let place = |d: usize| model.active.binary_search(&d);
         let scale: Vec<f64> = model.active.iter().map(|d| sizes[*d].sqrt()).collect();
         let w = Mat::from_fn(m, r, |i, j| model.interface[(i, j)] * scale[j]);
-        let (mut k, mut c) = (Mat::<f64>::zeros(r, r), Mat::<f64>::zeros(r, r));
+        let (mut wk, mut wc) = (Mat::<f64>::zeros(m, r), Mat::<f64>::zeros(m, r));
         for term in terms {
-            if let (Some(i), Some(j)) = (place(term.row), place(term.column)) {
-                k[(i, j)] += term.stiffness / (scale[i] * scale[j]);
-                c[(i, j)] += term.damping / (scale[i] * scale[j]);
+            if let (Ok(i), Ok(j)) = (place(term.row), place(term.column)) {
+                for (to, value) in [(&mut wk, term.stiffness), (&mut wc, term.damping)] {
+                    let (value, to) = (value / (scale[i] * scale[j]), to.col_as_slice_mut(j));
+                    to.iter_mut().zip(w.col_as_slice(i)).for_each(|(to, w)| *to += value * w);
+                }
             }
         }
-        let (wk, wc) = (product(w.as_ref(), k.as_ref()), product(w.as_ref(), c.as_ref()));
-        let (wkt, wct) = (product(w.as_ref(), k.transpose()), product(w.as_ref(), c.transpose()));
         let mut stiffness = product(wk.as_ref(), w.transpose());
         let mut damping = product(wc.as_ref(), w.transpose());
         let mut loss = model.coupled_loss.clone().unwrap_or_else(|| Mat::zeros(m, m));
@@ -173,19 +192,35 @@ impl<'a> ReducedSpectrum<'a> {
         (0..2 * m).for_each(|i| defect[(i, i)] -= c64::new(1.0, 0.0));
         let row = |a: &Mat<c64>, i: usize| (0..2 * m).map(|j| a[(i, j)].norm()).sum::<f64>();
         let rests = (0..2 * m).map(|i| [row(&rest, i), row(&defect, i)]).collect();
-        let x = Mat::from_fn(m, 2 * m, |i, k| x[(i, k)] / omega[i]);
-        let z = Mat::from_fn(m, 2 * m, |i, k| z[(k, m + i)]);
+        let right = Mat::from_fn(m, 2 * m, |i, k| x[(i, k)] / omega[i]);
+        let left = Mat::from_fn(m, 2 * m, |i, k| z[(k, m + i)]);
+        Ok(Decomposition { values, rests, right, left })
+    }
+}
+
+impl<'a> ReducedSpectrum<'a> {
+    /// The spectrum of the reduced model with the numbers of an interface, as for [`Decomposition::new`].
+    pub(super) fn new(
+        model: &'a ReducedModel,
+        terms: &[InterfaceTerm],
+        sizes: &[f64],
+        top: f64,
+    ) -> Result<Self> {
+        let Decomposition { values, rests, right, left } = Decomposition::new(model, terms, sizes, top)?;
         let remainder = model.remainder.as_ref();
-        let (mut reaches, mut missed) = ([Vec::new(), Vec::new()], [0.0; 2]);
-        if let Some(remainder) = remainder {
-            let through = |a: &Mat<f64>| product(a.as_ref(), remainder.missed.as_ref());
-            reaches = [
-                reaches_of(remainder, &through(&wkt), &through(&wct), &x),
-                reaches_of(remainder, &through(&wk), &through(&wc), &z),
-            ];
-            missed = [&k, &c].map(|a| product(remainder.missed.transpose(), through(a).as_ref()).norm_l2());
-        }
-        Ok(ReducedSpectrum { remainder, values, rests, reaches, missed })
+        let none = || [(); 3].map(|()| Mat::zeros(0, 2 * model.oscillators.len()));
+        let powers = match remainder {
+            Some(remainder) => {
+                let [straight, transposed] = &remainder.contact;
+                let of = |contact, x| powers_of([&remainder.terms, contact], x);
+                [of(straight, &right), of(transposed, &left)]
+            }
+            None => [none(), none()],
+        };
+        let reaches =
+            powers.each_ref().map(|powers| (0..values.len()).map(|k| Reach::of(powers, k)).collect());
+        let far = Far::new(&values, FAR * top, powers, &reaches);
+        Ok(ReducedSpectrum { remainder, values, rests, reaches, far })
     }
 
     /// Covers the boundary of `region` with discs and counts what lies inside; given up where ρ is above `largest_defect`.
@@ -198,14 +233,16 @@ impl<'a> ReducedSpectrum<'a> {
         let (mut points, mut defect) = (0, 0.0);
         let path = region.path();
         let mut worst = path[0];
+        let ratio = RADIUS / (1.0 + RADIUS);
         for edge in path.windows(2) {
             let length = (edge[1] - edge[0]).norm();
             let direction = (edge[1] - edge[0]) / length;
             let mut done = 0.0;
+            let mut far = self.far.disc(edge[0], direction, ratio);
             while done < length {
                 // The disc's centre lies its radius ahead; the distance there is less by that at most.
                 let nearest = self.distance(edge[0] + direction * done);
-                let h = (RADIUS / (1.0 + RADIUS) * nearest)
+                let h = (ratio * nearest)
                     .min(0.5 * (length - done))
                     .min(0.02 * region.omega[1].max((edge[0] + direction * done).norm()));
                 let c = edge[0] + direction * (done + h);
@@ -213,7 +250,10 @@ impl<'a> ReducedSpectrum<'a> {
                     return Err(Stopped::At(c));
                 }
                 // A shade more than the radius, so that rounding leaves no gap.
-                let bound = self.bound(c, 1.001 * h).ok_or(Stopped::At(c))?;
+                if (c - far.centre).norm() + 1.001 * h > far.radius {
+                    far = self.far.disc(edge[0] + direction * done, direction, 1.002 * ratio);
+                }
+                let bound = self.bound(c, 1.001 * h, far.bound).ok_or(Stopped::At(c))?;
                 if bound > defect {
                     (defect, worst) = (bound, c);
                 }
@@ -232,9 +272,15 @@ impl<'a> ReducedSpectrum<'a> {
         self.values.iter().fold(f64::INFINITY, |d, value| d.min((s - value).norm_sqr())).sqrt()
     }
 
-    /// A bound on ρ = q ‖E‖ in the disc of radius `h` about `c`, as far as the contour goes; `None` where the rest of the
-    /// decomposition may be an eigenvalue's.
-    pub(super) fn bound(&self, c: c64, h: f64) -> Option<f64> {
+    /// A bound on ρ at `s`.
+    #[cfg(test)]
+    pub(super) fn bound_at(&self, s: c64) -> Option<f64> {
+        self.bound(s, 0.0, self.far.bound(s, 0.0))
+    }
+
+    /// A bound on ρ = q ‖E‖ in the disc of radius `h` about `c`, as far as the contour goes, given one on the part of the eigenvalues
+    /// beyond the region; `None` where the rest of the decomposition may be an eigenvalue's.
+    fn bound(&self, c: c64, h: f64, far: f64) -> Option<f64> {
         let reach = c.norm() + h;
         // Of every eigenvalue |D| and |D|(|R| + |s||F|).
         let near: Vec<[f64; 2]> = self
@@ -260,36 +306,35 @@ impl<'a> ReducedSpectrum<'a> {
         let largest = right.iter().fold(0.0f64, |l, v| l.max(*v));
         let sum: f64 = (0..near.len())
             .map(|k| {
-                self.reaches[0][k].within(&weights, h) * (right[k] + near[k][1] * largest / (1.0 - delta))
+                let own = if self.far.holds(k) { 0.0 } else { right[k] };
+                self.reaches[0][k].within(&weights, h) * (own + near[k][1] * largest / (1.0 - delta))
             })
             .sum();
-        let bound = q * (sum + self.missed[0] + reach * self.missed[1]);
+        let bound = q * (sum + far + remainder.missed.stiffness + reach * remainder.missed.damping);
         // A product of zero and infinity is no bound.
         Some(if bound.is_nan() { f64::INFINITY } else { bound })
     }
 }
 
-/// (Γ + W_Z (k + s c) W_Bᵀ) x of every column x, with `stiff` and `damped` W_B kᵀ W_Zᵀ and W_B cᵀ W_Zᵀ.
-fn reaches_of(remainder: &Remainder, stiff: &Mat<f64>, damped: &Mat<f64>, x: &Mat<c64>) -> Vec<Reach> {
+/// p₀, p₁ and p₂ of Q_ZB(s) x = p₀ + s p₁ + s² p₂ of every column x, given the terms of Q_ZBᵀ.
+fn powers_of(terms: [&Vec<(CouplingFactor, Mat<f64>)>; 2], x: &Mat<c64>) -> [Mat<c64>; 3] {
     let (re, im) = (part(x, |z| z.re), part(x, |z| z.im));
     let image = |a: &Mat<f64>| {
         let (re, im) = (product(a.transpose(), re.as_ref()), product(a.transpose(), im.as_ref()));
         Mat::from_fn(re.nrows(), re.ncols(), |i, k| c64::new(re[(i, k)], im[(i, k)]))
     };
-    let mut powers = [image(stiff), image(damped), Mat::zeros(stiff.ncols(), x.ncols())];
-    for (factor, l) in &remainder.terms {
+    let f = terms[0].first().map_or(0, |(_, l)| l.ncols());
+    let mut powers = [(); 3].map(|()| Mat::<c64>::zeros(f, x.ncols()));
+    for (factor, l) in terms.into_iter().flatten() {
         let flexible = image(l);
         let (linear, square) = (c64::new(factor.linear, 0.0), c64::new(factor.square, 0.0));
         for (power, weight) in powers.iter_mut().zip([factor.constant, linear, square]) {
-            *power += &flexible * faer::Scale(weight);
+            if weight.norm() > 0.0 {
+                *power += &flexible * faer::Scale(weight);
+            }
         }
     }
-    let dot = |k: usize, i: usize, j: usize| -> c64 {
-        let (a, b) = (powers[i].col_as_slice(k), powers[j].col_as_slice(k));
-        a.iter().zip(b).map(|(a, b)| a.conj() * b).sum()
-    };
-    let reach = |k: usize| Reach::new([0, 1, 2].map(|i| [0, 1, 2].map(|j| dot(k, i, j))));
-    (0..x.ncols()).map(reach).collect()
+    powers
 }
 
 fn part(x: &Mat<c64>, of: fn(&c64) -> f64) -> Mat<f64> {

@@ -9,6 +9,7 @@ use crate::linalg::{SparseVector, c64};
 use crate::modal::RealModes;
 use crate::stability::analysis::analyse;
 use crate::stability::basis::Basis;
+use crate::stability::closed::ClosedContact;
 use crate::stability::complex_modes;
 use crate::stability::tests::{damped, dense_matrices, dense_modes, dense_spectrum, steady};
 use crate::system::{Coupling, System};
@@ -297,6 +298,43 @@ fn a_truncated_basis_is_bounded_and_counts_as_the_full_order() {
     assert!(unstable > 0);
 }
 
+/// Contact in some hundred points, whose directions are more than the real modes: counted in a narrow basis, or in a richer one, as by the
+/// dense solver, or not proven, which is said.
+#[test]
+fn hundreds_of_points_are_counted_as_by_the_dense_solver_or_said_not_to_be() {
+    let (mut proven, mut open, mut grows) = (0, 0, 0);
+    for seed in 0..9u64 {
+        let system = damped(random_system(320, 120, 20.0, 2000 + seed), seed);
+        let mut state = steady(&system);
+        for point in &mut state.points {
+            let weak = [0.05, 0.2, 1.0][seed as usize % 3];
+            point.tangent.by_penetration[1..].iter_mut().for_each(|friction| *friction *= weak);
+            point.tangent.by_slip_velocity.as_flattened_mut().iter_mut().for_each(|damping| *damping *= weak);
+        }
+        let real = dense_modes(&system, 60);
+        let band = [0.0, 0.5 * (real.frequency_hz(9) + real.frequency_hz(10))];
+        let (modes, certificate) = certified_modes(&system, &state, &real, band, f64::INFINITY, &()).unwrap();
+        let Some(certificate) = certificate else {
+            assert!(!modes.warnings.is_empty(), "seed {seed}");
+            open += 1;
+            continue;
+        };
+        let exact = dense_count(&dense_spectrum(&system, &state), &certificate);
+        println!("{seed} {} {exact} {certificate:?}", modes.subspace_dimension);
+        if certificate.margin > 1.0 {
+            assert_eq!(certificate.counted, exact, "seed {seed}: {certificate:?}");
+            assert!(certificate.holds(), "seed {seed}: {certificate:?}");
+            proven += 1;
+            grows += exact;
+        } else {
+            assert!(modes.warnings.iter().any(|words| words.contains("no proof")), "seed {seed}");
+            open += 1;
+        }
+    }
+    println!("{proven} proven, {open} open, {grows} that grow");
+    assert!(proven >= 4 && grows > 0, "{proven} proven, {open} open, {grows} that grow");
+}
+
 #[test]
 fn a_mode_too_few_or_too_many_is_noticed() {
     // The first sample with a mode that grows.
@@ -364,6 +402,29 @@ fn bounds_hold_at_full_order() {
     }
 }
 
+/// The same with more directions of contact than images of the basis, and norms of W_Z from a few products.
+#[test]
+fn bounds_of_many_directions_hold_at_full_order() {
+    for kind in 0..4 {
+        let system = damped(random_system(150, 60, 20.0, 3000 + kind), kind);
+        let (state, real) = (steady(&system), dense_modes(&system, 30));
+        let band = [0.0, 0.5 * (real.frequency_hz(5) + real.frequency_hz(6))];
+        let closed = ClosedContact::of((&system, &state), &real, TAU * band[1], &()).unwrap().unwrap();
+        analyse(&system, &state, &real, band, &(), |_, analysis| {
+            let poor = Basis::new(analysis.operator, closed.real.shapes.as_ref(), (TAU * band[1]).powi(2));
+            let narrow = narrow::narrow(&analysis).unwrap();
+            assert!(narrow.n_real() < narrow.len() && narrow.len() <= analysis.basis.len());
+            assert!(directions(&analysis) > 4 * poor.len(), "{}", directions(&analysis));
+            for basis in [&poor, &narrow] {
+                let analysis = CompletedAnalysis { basis, ..analysis };
+                bounds_hold(kind, &closed.system, &closed.steady, band, &analysis);
+            }
+            bounds_hold(kind, &closed.system, &closed.steady, band, &analysis);
+        })
+        .unwrap();
+    }
+}
+
 fn bounds_hold(
     kind: u64,
     system: &System,
@@ -418,7 +479,7 @@ fn bounds_hold(
             "kind {kind}: {rho:.2e} {:.2e}",
             point.defect
         );
-        let bound = spectrum.bound(s, 0.0).unwrap();
+        let bound = spectrum.bound_at(s).unwrap();
         assert!(
             within(rho, bound * (1.0 + 1e-6) + 1e-11, Stated),
             "kind {kind}: {rho:.2e} {bound:.2e} one by one"
