@@ -9,8 +9,11 @@
 //! the like). For normally distributed b in r dimensions that has a probability of √(2r/π) √((1 − ε)/ε) / T at most: ε is chosen so that
 //! this is [`RISK`], and λ₁ ≤ θ/(1 − ε) but for that.
 
+use crate::error::Result;
+use crate::linalg::dense::symmetric_eigen;
 use crate::linalg::random::Random;
 use crate::linalg::sparse::dot;
+use faer::Mat;
 use std::f64::consts::{PI, TAU};
 
 /// Probability that a bound is too low.
@@ -34,7 +37,7 @@ struct Krylov {
 pub(super) fn largest_eigenvalues(
     orders: &[usize],
     mut products: impl FnMut(&[Vec<f64>]) -> Vec<Vec<f64>>,
-) -> Vec<f64> {
+) -> Result<Vec<f64>> {
     let mut random = Random::new();
     let mut spaces: Vec<Krylov> = orders
         .iter()
@@ -77,10 +80,16 @@ impl Krylov {
         }
     }
 
-    fn bound(&self, r: usize) -> f64 {
+    fn bound(&self, r: usize) -> Result<f64> {
         let k = self.diagonal.len();
-        let theta = largest_of_tridiagonal(&self.diagonal, &self.coupling[..k.saturating_sub(1)]);
-        if self.whole { theta } else { theta / (1.0 - shortfall(k, r)) }
+        let tridiagonal = Mat::from_fn(k, k, |i, j| match i.abs_diff(j) {
+            0 => self.diagonal[i],
+            1 => self.coupling[i.min(j)],
+            _ => 0.0,
+        });
+        let (values, _) = symmetric_eigen(tridiagonal.as_ref())?;
+        let theta = values.last().copied().unwrap_or(0.0);
+        Ok(if self.whole { theta } else { theta / (1.0 - shortfall(k, r)) })
     }
 }
 
@@ -96,29 +105,6 @@ fn shortfall(steps: usize, r: usize) -> f64 {
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
         if fails(middle) { low = middle } else { high = middle }
-    }
-    high
-}
-
-/// By bisection with Sturm's count, from above.
-fn largest_of_tridiagonal(diagonal: &[f64], coupling: &[f64]) -> f64 {
-    let size = |i: usize| {
-        let before = i.checked_sub(1).map_or(0.0, |i| coupling[i]);
-        diagonal[i].abs() + before + coupling.get(i).copied().unwrap_or(0.0)
-    };
-    let reach = (0..diagonal.len()).map(size).fold(0.0, f64::max);
-    let all_below = |x: f64| {
-        let mut pivot = 1.0;
-        (0..diagonal.len()).all(|i| {
-            let square = i.checked_sub(1).map_or(0.0, |i| coupling[i] * coupling[i]);
-            pivot = x - diagonal[i] - square / pivot;
-            pivot > 0.0
-        })
-    };
-    let (mut low, mut high) = (0.0, reach * (1.0 + 1e-12));
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if all_below(middle) { high = middle } else { low = middle }
     }
     high
 }
@@ -142,7 +128,8 @@ mod tests {
         let bounds = largest_eigenvalues(&orders, |vectors| {
             let product = |v: &Vec<f64>| (0..v.len()).map(|i| value(v.len(), i) * v[i]).collect();
             vectors.iter().map(product).collect()
-        });
+        })
+        .unwrap();
         assert_eq!((bounds[0], bounds[2]), (0.0, 0.0));
         for (bound, r) in bounds.iter().zip(orders).filter(|(_, r)| *r != 0 && *r != 5) {
             let most = if r <= STEPS { 1.0 + 1e-10 } else { 1.0 / (1.0 - shortfall(STEPS, r)) };

@@ -94,7 +94,7 @@ impl DirectionGroup {
         groups: &[Self],
         analysis: &CompletedAnalysis<'_>,
         ritz: &RitzPairs<'_>,
-    ) -> Vec<f64> {
+    ) -> Result<Vec<f64>> {
         let rounding = |group: &Self| {
             let combinations = Probes::combinations(group.members.len());
             let forces = group.forces(analysis, combinations.as_ref());
@@ -122,9 +122,9 @@ impl DirectionGroup {
                 products[*g] = motion.col_as_slice(0).to_vec();
             }
             products
-        });
+        })?;
         sizes.iter_mut().zip(rounding).for_each(|(size, rounding)| *size += rounding);
-        sizes
+        Ok(sizes)
     }
 
     /// W v.

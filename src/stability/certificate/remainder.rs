@@ -144,7 +144,7 @@ impl Remainder {
                 let of = |group: &DirectionGroup| group.largest_of_rows(active, all.as_ref());
                 groups.iter().map(of).collect::<Result<Vec<f64>>>()?
             }
-            None => DirectionGroup::largest(&groups, analysis, &ritz),
+            None => DirectionGroup::largest(&groups, analysis, &ritz)?,
         };
         Ok(Remainder {
             complete_below: analysis.complete_below,

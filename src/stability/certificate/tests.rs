@@ -303,15 +303,22 @@ fn a_truncated_basis_is_bounded_and_counts_as_the_full_order() {
 #[test]
 fn hundreds_of_points_are_counted_as_by_the_dense_solver_or_said_not_to_be() {
     let (mut proven, mut open, mut grows) = (0, 0, 0);
-    for seed in 0..9u64 {
-        let system = damped(random_system(320, 120, 20.0, 2000 + seed), seed);
+    for seed in 0..6u64 {
+        let n = 240;
+        let mut system = damped(random_system(n, 120, 60.0, 2000 + seed), seed);
         let mut state = steady(&system);
+        let mut random = Random::seeded(seed);
+        let mut direction = || vector(&[0, 1, 2].map(|_| (random.below(n), random.between(-1.0, 1.0))));
+        let directions = vec![direction(), direction()];
+        let stiffness = faer::mat![[0.0, 300.0], [-300.0, 0.0]];
+        let damping = faer::mat![[-8.0, 0.0], [0.0, 0.0]];
+        system.coupling = Some(Coupling { directions, stiffness, damping, skew: None });
         for point in &mut state.points {
             let weak = [0.05, 0.2, 1.0][seed as usize % 3];
             point.tangent.by_penetration[1..].iter_mut().for_each(|friction| *friction *= weak);
             point.tangent.by_slip_velocity.as_flattened_mut().iter_mut().for_each(|damping| *damping *= weak);
         }
-        let real = dense_modes(&system, 60);
+        let real = dense_modes(&system, 50);
         let band = [0.0, 0.5 * (real.frequency_hz(9) + real.frequency_hz(10))];
         let (modes, certificate) = certified_modes(&system, &state, &real, band, f64::INFINITY, &()).unwrap();
         let Some(certificate) = certificate else {
@@ -332,7 +339,7 @@ fn hundreds_of_points_are_counted_as_by_the_dense_solver_or_said_not_to_be() {
         }
     }
     println!("{proven} proven, {open} open, {grows} that grow");
-    assert!(proven >= 4 && grows > 0, "{proven} proven, {open} open, {grows} that grow");
+    assert!(proven >= 3 && grows > 0, "{proven} proven, {open} open, {grows} that grow");
 }
 
 #[test]
@@ -406,15 +413,15 @@ fn bounds_hold_at_full_order() {
 #[test]
 fn bounds_of_many_directions_hold_at_full_order() {
     for kind in 0..4 {
-        let system = damped(random_system(150, 60, 20.0, 3000 + kind), kind);
-        let (state, real) = (steady(&system), dense_modes(&system, 30));
-        let band = [0.0, 0.5 * (real.frequency_hz(5) + real.frequency_hz(6))];
+        let system = damped(random_system(150, 60, 60.0, 3000 + kind), kind);
+        let (state, real) = (steady(&system), dense_modes(&system, 14));
+        let band = [0.0, 0.5 * (real.frequency_hz(3) + real.frequency_hz(4))];
         let closed = ClosedContact::of((&system, &state), &real, TAU * band[1], &()).unwrap().unwrap();
         analyse(&system, &state, &real, band, &(), |_, analysis| {
             let poor = Basis::new(analysis.operator, closed.real.shapes.as_ref(), (TAU * band[1]).powi(2));
             let narrow = narrow::narrow(&analysis).unwrap();
             assert!(narrow.n_real() < narrow.len() && narrow.len() <= analysis.basis.len());
-            assert!(directions(&analysis) > 4 * poor.len(), "{}", directions(&analysis));
+            assert!(directions(&analysis) > 3 * poor.len(), "{} {}", directions(&analysis), poor.len());
             for basis in [&poor, &narrow] {
                 let analysis = CompletedAnalysis { basis, ..analysis };
                 bounds_hold(kind, &closed.system, &closed.steady, band, &analysis);
