@@ -4,7 +4,7 @@
 //! Q_ZB X_F |D_F|^½ and |D_F|^½ Z_F Q_BZ. Far from the contour these change slowly: a few discs cover it. The norms are those of small
 //! matrices, ‖P‖² = λ_max(PᴴP) ≤ ‖(PᴴP)¹⁶‖^(1/16) of Frobenius.
 
-use super::spectrum::{Reach, SpectrumWeights};
+use super::reach::{Reach, SpectrumWeights};
 use crate::linalg::c64;
 use crate::linalg::dense::product;
 use faer::Mat;

@@ -1,7 +1,7 @@
 //! The columns of F in a few rows: what damping and interface make of the basis.
 
+use super::coupling_factor::CouplingFactor;
 use super::damping::DampingParts;
-use super::remainder::CouplingFactor;
 use super::rows::ColumnBlock;
 use crate::dynamics::InterfaceTerm;
 use crate::linalg::c64;

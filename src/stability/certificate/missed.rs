@@ -4,7 +4,7 @@
 //! directions, ‖W_Z‖² of these, is bounded by some products ([`largest_eigenvalues`]), a solution each.
 
 use super::largest::largest_eigenvalues;
-use super::remainder::{Probes, RitzPairs};
+use super::probes::{Probes, RitzPairs};
 use crate::dynamics::InterfaceTerm;
 use crate::error::Result;
 use crate::linalg::dense::{product, symmetric_eigen};

@@ -30,6 +30,7 @@
 mod beyond;
 mod contour;
 mod count;
+mod coupling_factor;
 mod damping;
 mod determinant;
 mod far;
@@ -38,6 +39,8 @@ mod largest;
 mod missed;
 mod narrow;
 mod pencil;
+mod probes;
+mod reach;
 mod reduced;
 mod region;
 mod remainder;
