@@ -52,7 +52,7 @@ declare! {
         /// Takes 4-node tetrahedra, 5-node pyramids and 6-node wedges, too, which are far too stiff in bending and shear (locking).
         pub allow_locking: bool = key::flag(false),
         /// `full` or, of 20-node hexahedra, `reduced` (2 × 2 × 2 points): softer in bending, and less stiff where
-        /// ν is near ½; a hundredth of the full stiffness holds its hourglass modes.
+        /// ν is near ½; a thousandth of the full stiffness holds its hourglass modes.
         pub integration: Integration = key::choice().or(Integration::Full),
     }
 }

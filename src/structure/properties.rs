@@ -22,7 +22,7 @@ choices! {
         /// 3 × 3 × 3 points, or more where edges are curved: exact.
         Full = "full",
         /// 2 × 2 × 2 points, as C3D20R of Abaqus and CalculiX: softer in bending, and less stiff where
-        /// ν is near ½; a hundredth of the full stiffness holds its hourglass modes.
+        /// ν is near ½; a thousandth of the full stiffness holds its hourglass modes.
         Reduced = "reduced",
     }
 }

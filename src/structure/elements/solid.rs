@@ -27,7 +27,7 @@ type Strain = SMatrix<f64, 6, 3>;
 const STRAIGHT: f64 = 1e-6;
 
 /// θ: the part of the exact stiffness in that of reduced integration.
-const STABILISATION: f64 = 0.01;
+const STABILISATION: f64 = 1e-3;
 
 /// An element on one cell, 3 freedoms a node.
 pub struct SolidElement<'a> {
