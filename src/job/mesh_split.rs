@@ -16,11 +16,11 @@ use crate::linalg::sparse::multiply_vector;
 use crate::modal::{self, Disc, ModesWanted, RealModes, levels};
 use crate::progress::Observer;
 use crate::stability::{ComplexMode, StiffnessChange, changed_eigenvalues};
-use crate::structure::{Assembled, Rotation, RotationAxis, assemble, deviation};
+use crate::structure::{Assembled, Rotation, RotationAxis, assemble, deviation, is_even_around};
 use std::f64::consts::TAU;
 
 /// Modes of parts are taken up to this many times the highest frequency of the complex modes.
-const REACH: f64 = 1.5;
+const REACH: f64 = 1.2;
 /// Two modes of one name with nodal diameters are a pair where ω² differs by less than this part.
 const PAIR: f64 = 0.1;
 /// The rim is round where its radius varies by less than this part, in so many sectors.
@@ -58,6 +58,10 @@ fn without_split(prepared: &Prepared, hz: f64, observer: &dyn Observer) -> Resul
         if !is_of_revolution(prepared, name, &disc) {
             continue;
         }
+        let change = change.get_or_insert_with(StiffnessChange::default);
+        if is_even(prepared, name, &disc) {
+            continue;
+        }
         let alone = ModesAnalysis {
             parts: vec![name.to_string()],
             clamp: Vec::new(),
@@ -75,7 +79,6 @@ fn without_split(prepared: &Prepared, hz: f64, observer: &dyn Observer) -> Resul
         let mut assembled = assemble(&model)?;
         assembled.structure.engine = prepared.system.structure.engine.clone();
         let (modes, _) = modal::compute(&assembled.structure, ModesWanted::BelowHz(hz), observer)?;
-        let change = change.get_or_insert_with(StiffnessChange::default);
         for (k, split) in splits(&modes, &disc, &assembled) {
             change.terms.push((split, on_the_whole(prepared, &assembled, modes.shapes.col_as_slice(k))));
         }
@@ -83,8 +86,17 @@ fn without_split(prepared: &Prepared, hz: f64, observer: &dyn Observer) -> Resul
     Ok(change)
 }
 
+fn axis_of(disc: &Disc) -> RotationAxis {
+    RotationAxis { point: disc.centre.into(), direction: disc.normal.into() }
+}
+
+/// Whether the mesh of the part splits no double mode, which needs no modes to see.
+fn is_even(prepared: &Prepared, name: &str, disc: &Disc) -> bool {
+    prepared.model.part(name).is_some_and(|part| is_even_around(part, &prepared.model.nodes, &axis_of(disc)))
+}
+
 fn is_of_revolution(prepared: &Prepared, name: &str, disc: &Disc) -> bool {
-    let axis = RotationAxis { point: disc.centre.into(), direction: disc.normal.into() };
+    let axis = axis_of(disc);
     let isotropic =
         prepared.model.part(name).is_some_and(|part| part.kind.material().is_isotropic_about(axis.direction));
     let rotation = Rotation {
@@ -119,6 +131,11 @@ fn splits(modes: &RealModes, disc: &Disc, assembled: &Assembled) -> Vec<(usize, 
     };
     let name = |k: usize| disc.name(|node| [0, 1, 2, 3, 4, 5].map(|dof| motion(k, node, dof)));
     let names: Vec<_> = (first..modes.len()).map(name).collect();
+    eprintln!(
+        (0..names.len())
+            .map(|k| (modes.frequency_hz(first + k), names[k].map(|n| (n.nodal_diameters, n.nodal_circles))))
+            .collect::<Vec<_>>()
+    );
     let mut pairs: Vec<[usize; 2]> = Vec::new();
     let mut single: Vec<usize> = Vec::new();
     for k in 0..names.len() {
@@ -163,3 +180,6 @@ fn on_the_whole(prepared: &Prepared, part: &Assembled, shape: &[f64]) -> Vec<f64
     }
     g
 }
+
+#[cfg(test)]
+mod tests;

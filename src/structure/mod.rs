@@ -47,7 +47,7 @@ pub use part_forms::{PartForms, PartMatrix};
 pub use properties::{
     Bar, Integration, PlateTheory, PointMass, Rotation, RotationAxis, Shell, Solid, Spring,
 };
-pub use revolution::{Deviation, deviation};
+pub use revolution::{Deviation, deviation, is_even_around};
 pub use section::Section;
 pub use tie::{Tie, Tied, tied};
 pub use warnings::{ThicknessError, element_size, thickness_errors};

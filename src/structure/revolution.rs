@@ -1,10 +1,13 @@
-//! Whether a body is one of revolution: its surface must fall upon itself when it is turned.
+//! Whether a body is one of revolution: its surface must fall upon itself when it is turned. Whether its mesh does, when it is turned by an element.
 
 use super::model::Model;
-use super::properties::Rotation;
-use crate::mesh::{Cell, FaceTree, cell_nodes, outer_faces};
+use super::part::Part;
+use super::properties::{Rotation, RotationAxis};
+use crate::mesh::{Cell, FaceTree, cell_nodes, coincident, outer_faces};
 use nalgebra::{Rotation3, Unit, Vector3};
 use rayon::prelude::*;
+use std::collections::HashSet;
+use std::f64::consts::TAU;
 
 /// The angle that divides the turn so that its multiples come near no symmetry \[rad\], and how many of them are used.
 const GOLDEN_ANGLE: f64 = 2.399_963_229_728_653;
@@ -56,4 +59,55 @@ pub fn deviation(model: &Model, rotation: &Rotation) -> Option<Deviation> {
         at: model.nodes[nodes[worst]],
         radius,
     })
+}
+
+/// Whether the mesh of a part falls upon itself, cell by cell, when it is turned about the axis by one element of its rim: then no wave that the
+/// mesh can hold is split by it.
+pub fn is_even_around(part: &Part, nodes: &[[f64; 3]], axis: &RotationAxis) -> bool {
+    let own = part.nodes();
+    let Some(turn) = element_of_the_rim(part, nodes, axis) else { return false };
+    let (point, by) = (
+        Vector3::from(axis.point),
+        Rotation3::from_axis_angle(&Unit::new_unchecked(axis.direction.into()), turn),
+    );
+    let mut places: Vec<[f64; 3]> = own.iter().map(|n| nodes[*n]).collect();
+    let turned: Vec<[f64; 3]> =
+        places.iter().map(|x| (point + by * (Vector3::from(*x) - point)).into()).collect();
+    places.extend(turned);
+    // Where each node comes to lie.
+    let mut image = vec![None; nodes.len()];
+    for [a, b] in coincident(&places) {
+        if a < own.len() && b >= own.len() {
+            image[own[b - own.len()]] = Some(own[a]);
+        }
+    }
+    let name = |cell: &Cell, at: &dyn Fn(usize) -> Option<usize>| -> Option<Vec<usize>> {
+        let mut name = cell.nodes().iter().map(|n| at(*n)).collect::<Option<Vec<usize>>>()?;
+        name.sort_unstable();
+        Some(name)
+    };
+    let there: HashSet<Option<Vec<usize>>> = part.cells.iter().map(|cell| name(cell, &Some)).collect();
+    part.cells
+        .iter()
+        .map(|cell| name(cell, &|n| image[n]))
+        .all(|cell| cell.is_some() && there.contains(&cell))
+}
+
+/// The angle between neighbouring corners of cells at the greatest radius, all at one place along the axis \[rad\].
+fn element_of_the_rim(part: &Part, nodes: &[[f64; 3]], axis: &RotationAxis) -> Option<f64> {
+    let mut corners: Vec<usize> = part.cells.iter().flat_map(|cell| cell.corners().iter().copied()).collect();
+    corners.sort_unstable();
+    corners.dedup();
+    let (e, point) = (Vector3::from(axis.direction), Vector3::from(axis.point));
+    let along = |n: usize| e.dot(&(Vector3::from(nodes[n]) - point));
+    let arm = |n: usize| axis.arm(nodes[n]);
+    let outermost = corners.iter().copied().max_by(|a, b| arm(*a).norm().total_cmp(&arm(*b).norm()))?;
+    let (first, height) = (arm(outermost), along(outermost));
+    let tolerance = ROUNDING * first.norm();
+    let beside = |n: &usize| {
+        (arm(*n).norm() - first.norm()).abs() <= tolerance && (along(*n) - height).abs() <= tolerance
+    };
+    let angle = |n: usize| e.dot(&first.cross(&arm(n))).atan2(first.dot(&arm(n))).rem_euclid(TAU);
+    let angles = corners.into_iter().filter(|n| *n != outermost).filter(beside).map(angle);
+    angles.min_by(f64::total_cmp)
 }
