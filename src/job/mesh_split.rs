@@ -131,11 +131,6 @@ fn splits(modes: &RealModes, disc: &Disc, assembled: &Assembled) -> Vec<(usize, 
     };
     let name = |k: usize| disc.name(|node| [0, 1, 2, 3, 4, 5].map(|dof| motion(k, node, dof)));
     let names: Vec<_> = (first..modes.len()).map(name).collect();
-    eprintln!(
-        (0..names.len())
-            .map(|k| (modes.frequency_hz(first + k), names[k].map(|n| (n.nodal_diameters, n.nodal_circles))))
-            .collect::<Vec<_>>()
-    );
     let mut pairs: Vec<[usize; 2]> = Vec::new();
     let mut single: Vec<usize> = Vec::new();
     for k in 0..names.len() {
