@@ -1,7 +1,7 @@
 //! How the mesh of a body of revolution splits its double modes, and what complex modes would be without that.
 //!
 //! A body of revolution has its modes with nodal diameters twice at one frequency. A mesh that is not symmetric parts the two, and friction may then
-//! couple them, or be kept from coupling them. With the modes φ of the part alone, free, φᵀMφ = 1, and the mean ω̄² of each pair,
+//! couple them, or be kept from coupling them. With the modes φ of the part alone, free but for what holds it all around, φᵀMφ = 1, and the mean ω̄² of each pair,
 //!
 //! ΔK = Σ (ω̄² − ω²) Mφ φᵀM
 //!
@@ -16,7 +16,10 @@ use crate::linalg::sparse::multiply_vector;
 use crate::modal::{self, Disc, ModesWanted, RealModes, levels};
 use crate::progress::Observer;
 use crate::stability::{ComplexMode, StiffnessChange, changed_eigenvalues};
-use crate::structure::{Assembled, Rotation, RotationAxis, assemble, deviation, is_even_around};
+use crate::structure::{
+    Assembled, Model, Rotation, RotationAxis, Support, assemble, deviation, is_even_around,
+};
+use std::collections::HashSet;
 use std::f64::consts::TAU;
 
 /// Modes of parts are taken up to this many times the highest frequency of the complex modes.
@@ -76,6 +79,7 @@ fn without_split(prepared: &Prepared, hz: f64, observer: &dyn Observer) -> Resul
         };
         let mut model = part_model(prepared.case, &prepared.regions, &prepared.model, name, &alone)?;
         model.masses.clear();
+        model.supports.extend(all_around(prepared, &disc, &model));
         let mut assembled = assemble(&model)?;
         assembled.structure.engine = prepared.system.structure.engine.clone();
         let (modes, _) = modal::compute(&assembled.structure, ModesWanted::BelowHz(hz), observer)?;
@@ -84,6 +88,25 @@ fn without_split(prepared: &Prepared, hz: f64, observer: &dyn Observer) -> Resul
         }
     }
     Ok(change)
+}
+
+/// The supports of a part that hold every displacement in all sectors about its axis, of its own nodes.
+fn all_around(prepared: &Prepared, disc: &Disc, part: &Model) -> Vec<Support> {
+    let own: HashSet<usize> = part.parts.iter().flat_map(|part| part.nodes()).collect();
+    let axis = axis_of(disc);
+    let across = axis.arm(prepared.model.nodes[disc.nodes[0]]);
+    let beside = disc.normal.cross(&across);
+    let sector = |node: &usize| {
+        let arm = axis.arm(prepared.model.nodes[*node]);
+        sector(beside.dot(&arm).atan2(across.dot(&arm)))
+    };
+    let of = |support: &Support| {
+        let nodes: Vec<usize> = support.nodes.iter().copied().filter(|node| own.contains(node)).collect();
+        let sectors: HashSet<usize> = nodes.iter().map(sector).collect();
+        (support.held[..3] == [true; 3] && sectors.len() == SECTORS)
+            .then_some(Support { nodes, held: support.held })
+    };
+    prepared.model.supports.iter().filter_map(of).collect()
 }
 
 fn axis_of(disc: &Disc) -> RotationAxis {
@@ -114,13 +137,17 @@ fn is_of_revolution(prepared: &Prepared, name: &str, disc: &Disc) -> bool {
 fn has_round_rim(disc: &Disc) -> bool {
     let mut radii = [0.0_f64; SECTORS];
     for (r, angle) in &disc.polar {
-        let sector = (angle.rem_euclid(TAU) / TAU * SECTORS as f64) as usize;
-        let outermost = &mut radii[sector.min(SECTORS - 1)];
+        let outermost = &mut radii[sector(*angle)];
         *outermost = outermost.max(*r);
     }
     let [least, most] =
         [radii.iter().fold(f64::INFINITY, |m, r| m.min(*r)), radii.iter().fold(0.0, |m: f64, r| m.max(*r))];
     most - least <= ROUND * most
+}
+
+/// In which of the sectors an angle \[rad\] is.
+fn sector(angle: f64) -> usize {
+    ((angle.rem_euclid(TAU) / TAU * SECTORS as f64) as usize).min(SECTORS - 1)
 }
 
 /// The modes of pairs with ω̄² − ω² \[rad²/s²\]: of one name with nodal diameters, or without names all but equal.
