@@ -117,6 +117,9 @@ fn block_diagonal(a: &Mat<f64>, n: usize) -> Mat<f64> {
     })
 }
 
+/// What of a term acts, its stiffness or its damping.
+type Coefficient = fn(&InterfaceTerm) -> f64;
+
 /// G of K_c B = W G, C_c B, and the same transposed where that differs; none that is zero.
 fn interface_images(
     analysis: &CompletedAnalysis<'_>,
@@ -125,7 +128,7 @@ fn interface_images(
     top: f64,
 ) -> Vec<InterfaceImage> {
     let (interface, m) = (&analysis.operator.interface, analysis.basis.len());
-    let of = |value: fn(&InterfaceTerm) -> f64, transposed: bool| {
+    let of = |value: Coefficient, transposed: bool| {
         let mut image = Mat::zeros(active.len(), m);
         for term in interface.terms.iter().filter(|term| value(term) != 0.0) {
             let (to, from) = if transposed { (term.column, term.row) } else { (term.row, term.column) };
@@ -135,7 +138,7 @@ fn interface_images(
         }
         image
     };
-    let kinds: [(fn(&InterfaceTerm) -> f64, _, _); 2] =
+    let kinds: [(Coefficient, _, _); 2] =
         [(|term| term.stiffness, BY_DISPLACEMENT, top), (|term| term.damping, BY_VELOCITY, 1.0)];
     let mut images = Vec::new();
     for (value, factor, unit) in kinds {
