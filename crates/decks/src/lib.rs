@@ -2,7 +2,7 @@
 //!
 //! * [`read`]: reads a file by its name; [`read_bytes`] from memory.
 //! * [`Deck`]: nodes, elements, sets, materials, constraints, contacts, loads; plain data in the units of the file.
-//! * [`write`]: a deck as a file of Abaqus, CalculiX or NASTRAN.
+//! * [`write()`]: a deck as a file of Abaqus, CalculiX or NASTRAN.
 //! * [`convert`]: a mesh, a case and a page of what was read.
 //! * [`Ledger`]: what was read in part, or not at all, with its places.
 //!
