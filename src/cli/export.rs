@@ -26,6 +26,7 @@ pub struct ExportOptions {
 pub fn run(options: &ExportOptions, common: &Common) -> Result<u8> {
     let case = read_case(&options.case)?;
     let out = &options.out;
+    keeps_the_case(&options.case, out)?;
     match Format::of_path(out).ok().filter(|format| format.is_written() && !out.is_dir()) {
         Some(format) if !options.linearised => model(&case, format, out, common),
         Some(_) => {
@@ -36,6 +37,24 @@ pub fn run(options: &ExportOptions, common: &Common) -> Result<u8> {
         }
         None => matrices(&case, options, common),
     }
+}
+
+/// Fails where a case that no export wrote would be written over: the one that is exported, or another in the folder.
+fn keeps_the_case(case: &Path, out: &Path) -> Result<()> {
+    let same = |path: &Path| path.canonicalize().ok().is_some_and(|p| case.canonicalize().ok() == Some(p));
+    let inside = out.join("case.toml");
+    let over = if out.is_dir() {
+        same(&inside) || inside.exists() && !out.join("dofs.csv").exists()
+    } else {
+        same(out)
+    };
+    let found = if out.is_dir() { "a folder with a case that no export wrote" } else { "the case itself" };
+    if over {
+        let fault =
+            Fault::new("--out", format!("{found}, `{}`", out.display()), "a place where nothing is lost");
+        return Err(Error::input(fault.with_help("Give the name of another folder or file")));
+    }
+    Ok(())
 }
 
 fn matrices(case: &Case, options: &ExportOptions, common: &Common) -> Result<u8> {

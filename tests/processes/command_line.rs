@@ -369,6 +369,23 @@ fn the_matrices_of_solids_are_a_case() {
     succeeds(&["new", "brake", "--template", "solid"]);
     succeeds(&["export", "brake/case.toml", "--out", "matrices"]);
     succeeds(&["check", "matrices/case.toml"]);
+    // Once more into the same folder; but never over a case that is not an export's.
+    succeeds(&["export", "brake/case.toml", "--out", "matrices"]);
+    let own = folder.path().join("brake/case.toml");
+    let before = std::fs::read(&own).unwrap();
+    std::fs::copy(&own, folder.path().join("brake/brake.inp")).unwrap();
+    for out in [
+        ["brake/case.toml", "brake"],
+        ["matrices/case.toml", "brake"],
+        ["matrices/case.toml", "matrices"],
+        ["brake/brake.inp", "brake/brake.inp"],
+    ] {
+        let output = stridor(folder.path(), &["export", out[0], "--out", out[1]]);
+        assert_eq!(output.status.code(), Some(2), "{out:?}: {}", text(&output.stderr));
+        assert!(text(&output.stderr).contains("a place where nothing is lost"), "{}", text(&output.stderr));
+    }
+    assert_eq!(std::fs::read(&own).unwrap(), before);
+    assert_eq!(std::fs::read(folder.path().join("brake/brake.inp")).unwrap(), before);
 }
 
 #[test]

@@ -15,7 +15,7 @@
 //!    determinant winds like the small one. The margin is the smallest 1/ρ.
 //!    Of a large interface d costs too much: the eigenvalues of the reduced model are then computed and counted one by
 //!    one, their number inside is proven from what is left of the matrix in their coordinates, and the same coordinates
-//!    bound ρ ([`spectrum`]). Where contact has more directions than there are real modes, that is done in the part of the basis that
+//!    bound ρ ([`spectrum`]). Where contact has many directions, that is done in the part of the basis that
 //!    the modes of the band need ([`narrow`]), and in the whole where that proves nothing.
 //! 3. *Beyond the region.* Nothing in the band grows faster than R ([`beyond`]), oscillating or not. Where that is not shown, or the
 //!    region up to R could not be counted, R is the top of the band, 2π f, and that faster growth is not excluded is stated.

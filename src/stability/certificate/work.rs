@@ -21,6 +21,8 @@ pub struct CountSize {
 const ADDED: f64 = 2.0;
 /// Vectors of the basis of an analysis whose contact has many directions, for each of the real modes: 6.9 and 8.1 were counted.
 const BASIS: f64 = 8.0;
+/// Directions up to which the whole basis costs little and proves at least as much.
+const FEW_DIRECTIONS: f64 = 300.0;
 /// Factorisations of a count: of M, of the damping, and two or so for the fastest growth.
 const FACTORISATIONS: f64 = 4.0;
 /// Factorisations of an analysis: steady sliding, real modes and their counts, of the open and of the closed structure.
@@ -49,7 +51,7 @@ impl CountSize {
 
     /// Whether the count is that of a narrow basis.
     pub(super) fn is_narrow(&self) -> bool {
-        self.directions > self.real_modes
+        self.directions > self.real_modes.max(FEW_DIRECTIONS)
     }
 
     /// Vectors of the basis that is counted in, besides the real modes.
