@@ -53,13 +53,8 @@ pub fn run(options: &CheckOptions, common: &Common) -> Result<u8> {
                 expected.fill as f64,
                 expected.modes
             ))?;
-            if let Some(count) = expected.count {
-                say(format!(
-                    "The count of the unstable modes is expected to take {:.0e} operations, about {:.0} s of one core, and {:.1} GiB of that.",
-                    count.operations(),
-                    count.seconds(),
-                    count.bytes() / f64::from(1 << 30)
-                ))?;
+            if let Some(sentence) = expected.words_of_count() {
+                say(sentence)?;
             }
         }
     }

@@ -41,20 +41,18 @@ pub fn run(options: &ExportOptions, common: &Common) -> Result<u8> {
 
 /// Fails where a case that no export wrote would be written over: the one that is exported, or another in the folder.
 fn keeps_the_case(case: &Path, out: &Path) -> Result<()> {
-    let same = |path: &Path| path.canonicalize().ok().is_some_and(|p| case.canonicalize().ok() == Some(p));
-    let inside = out.join("case.toml");
-    let over = if out.is_dir() {
-        same(&inside) || inside.exists() && !out.join("dofs.csv").exists()
+    let written = if out.is_dir() { out.join("case.toml") } else { out.to_path_buf() };
+    let same = written.canonicalize().ok().is_some_and(|path| case.canonicalize().ok() == Some(path));
+    let found = if same {
+        "the case itself"
+    } else if out.is_dir() && written.exists() && !out.join("dofs.csv").exists() {
+        "a case that no export wrote"
     } else {
-        same(out)
+        return Ok(());
     };
-    let found = if out.is_dir() { "a folder with a case that no export wrote" } else { "the case itself" };
-    if over {
-        let fault =
-            Fault::new("--out", format!("{found}, `{}`", out.display()), "a place where nothing is lost");
-        return Err(Error::input(fault.with_help("Give the name of another folder or file")));
-    }
-    Ok(())
+    let found = format!("{found}, `{}`", written.display());
+    let fault = Fault::new("--out", found, "a place where nothing is lost");
+    Err(Error::input(fault.with_help("Give the name of another folder or file")))
 }
 
 fn matrices(case: &Case, options: &ExportOptions, common: &Common) -> Result<u8> {

@@ -57,11 +57,8 @@ impl MatrixFiles {
         let mut labelled: Vec<(&MatrixPath, Labelled)> = Vec::new();
         for file in files.iter().filter(|file| !self.known().contains_key(*file)) {
             // A file that cannot be read is a fault where it is wanted.
-            if matrix_files::is_labelled(&file.0).unwrap_or(false)
-                && let Some(Found::Labelled(matrix)) = faults.take(matrix_files::read(&file.0, file.1, 0))
-            {
-                labelled.push((file, matrix));
-            }
+            let matrix = faults.take(matrix_files::read_labelled(&file.0, file.1)).flatten();
+            labelled.extend(matrix.map(|matrix| (file, matrix)));
         }
         let rows: BTreeSet<Label> = labelled.iter().flat_map(|(_, matrix)| matrix.labels()).collect();
         let rows: Vec<Label> = rows.into_iter().collect();

@@ -8,6 +8,7 @@ use super::studies::{SHARED, UNCERTAINTY, studies};
 use crate::error::{Error, Result};
 use crate::linalg::sparse::{add_scaled, sum_of_squares};
 use crate::memory::{Available, available};
+use crate::numbers::significant;
 use crate::reduction::has_many_points;
 use crate::stability::CountSize;
 use crate::structure::{Model, Part, as_plate};
@@ -69,6 +70,16 @@ impl ExpectedMemory {
     /// The peak in words: `1.3 GiB`.
     pub fn words(&self) -> String {
         words(self.bytes)
+    }
+
+    /// What the count of the unstable modes takes of a run, in a sentence; none where it is not made.
+    pub fn words_of_count(&self) -> Option<String> {
+        let count = self.count?;
+        let (seconds, memory) = (significant(count.seconds(), 1), words(count.bytes()));
+        let operations = count.operations();
+        Some(format!(
+            "The count of the unstable modes is expected to take {operations:.0e} operations, about {seconds} s of one core, and {memory} of that."
+        ))
     }
 
     /// Fails where `available` is less than the peak.

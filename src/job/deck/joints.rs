@@ -7,6 +7,7 @@ use crate::decks::{
 };
 use crate::error::{Faults, Result};
 use crate::job::couplings::largest_tied_gap;
+use crate::mesh::quality::{dot, minus, norm};
 use crate::structure::Constraint;
 use std::collections::BTreeMap;
 
@@ -30,7 +31,7 @@ impl Maker<'_> {
     pub(super) fn springs(&mut self) {
         let mut alike: BTreeMap<Alike, Vec<(usize, Option<usize>)>> = BTreeMap::new();
         for spring in &self.model.springs {
-            let length = spring.direction.iter().map(|x| x * x).sum::<f64>().sqrt();
+            let length = norm(spring.direction);
             let unit = spring.direction.map(|x| x / length);
             let axis = (0..3).find(|k| (unit[*k].abs() - 1.0).abs() < PARALLEL);
             let dof = match (axis, spring.other) {
@@ -54,11 +55,9 @@ impl Maker<'_> {
     }
 
     fn is_along(&self, unit: [f64; 3], a: usize, b: usize) -> bool {
-        let [a, b] = [a, b].map(|node| self.model.nodes[node]);
-        let line: [f64; 3] = std::array::from_fn(|k| b[k] - a[k]);
-        let length = line.iter().map(|x| x * x).sum::<f64>().sqrt();
-        let along: f64 = (0..3).map(|k| unit[k] * line[k]).sum();
-        length > 0.0 && along.abs() > (1.0 - PARALLEL) * length
+        let line = minus(self.model.nodes[b], self.model.nodes[a]);
+        let length = norm(line);
+        length > 0.0 && dot(unit, line).abs() > (1.0 - PARALLEL) * length
     }
 
     /// Rigid bodies and averages; constraints of springs between faces.
@@ -106,6 +105,7 @@ impl Maker<'_> {
     /// Nodes of solids have no rotations to be held.
     pub(super) fn supports(&mut self) -> Result<()> {
         let (case, place) = (self.case, Place::default());
+        let turning = self.turned();
         for (name, support) in &case.support {
             let mut faults = Faults::new();
             let at = format!("`support.{name}.on`");
@@ -115,7 +115,9 @@ impl Maker<'_> {
                 _ => self.set_of(name, &nodes),
             };
             let mut held = support.holds();
-            if !self.rotates(&nodes) && !self.deck.couplings.iter().any(|c| nodes.contains(&c.reference)) {
+            if !nodes.iter().any(|node| turning.contains(node))
+                && !self.deck.couplings.iter().any(|c| nodes.contains(&c.reference))
+            {
                 held[3..].fill(false);
             }
             let mut add = |held: [bool; 6], frame| {

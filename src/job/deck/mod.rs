@@ -60,11 +60,10 @@ impl Maker<'_> {
         self.deck.ledger.note(weight, what, why, Place::default());
     }
 
-    /// Whether shells or bars turn each of some nodes.
-    fn rotates(&self, nodes: &[usize]) -> bool {
+    /// The nodes that shells or bars turn.
+    fn turned(&self) -> HashSet<usize> {
         let turning = self.model.parts.iter().filter(|part| part.kind.dimension() < 3);
-        let turning: HashSet<usize> = turning.flat_map(|part| part.nodes()).collect();
-        nodes.iter().any(|node| turning.contains(node))
+        turning.flat_map(|part| part.nodes()).collect()
     }
 
     fn analyses(&mut self) {
@@ -93,14 +92,12 @@ impl Maker<'_> {
     }
 }
 
-/// The element of Abaqus and CalculiX that is the same as that of a solid or plate on cells of a kind; its first name where nothing else is known.
+/// The element of Abaqus and CalculiX that is the same as that of a part on cells of a kind, where it is not the usual one.
 fn type_name(kind: CellKind, reduced: bool) -> &'static str {
     match kind {
-        CellKind::Hexahedron8 => "C3D8I",
         CellKind::Hexahedron20 if reduced => "C3D20R",
-        CellKind::Quadrilateral4 => "S4",
         // Euler–Bernoulli, of cubic shape.
         CellKind::Line2 => "B33",
-        _ => kind.table().abaqus.first().and_then(|form| form.names().next()).unwrap_or("C3D20"),
+        _ => "",
     }
 }

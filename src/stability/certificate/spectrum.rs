@@ -245,15 +245,13 @@ impl<'a> ReducedSpectrum<'a> {
         let right: Vec<f64> =
             (0..near.len()).map(|k| near[k][0] * self.reaches[1][k].within(&weights, h)).collect();
         let largest = right.iter().fold(0.0f64, |l, v| l.max(*v));
-        // Those beyond the region one by one, too: where they are few that may be less.
-        let (mut sum, mut beyond) = (0.0, 0.0);
-        for (k, right) in right.iter().enumerate() {
-            let left = self.reaches[0][k].within(&weights, h);
-            *(if self.far.holds(k) { &mut beyond } else { &mut sum }) += left * right;
-            sum += left * near[k][1] * largest / (1.0 - delta);
-        }
-        let bound =
-            q * (sum + far.min(beyond) + remainder.missed.stiffness + reach * remainder.missed.damping);
+        let sum: f64 = (0..near.len())
+            .map(|k| {
+                let own = if self.far.holds(k) { 0.0 } else { right[k] };
+                self.reaches[0][k].within(&weights, h) * (own + near[k][1] * largest / (1.0 - delta))
+            })
+            .sum();
+        let bound = q * (sum + far + remainder.missed.stiffness + reach * remainder.missed.damping);
         // A product of zero and infinity is no bound.
         Some(if bound.is_nan() { f64::INFINITY } else { bound })
     }

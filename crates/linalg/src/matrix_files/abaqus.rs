@@ -6,6 +6,7 @@
 use super::found::{File, Found, Label, Labelled, Wrong};
 use crate::c64;
 use crate::matrix_market::{Lines, number, shown};
+use std::str::FromStr;
 use stridor_base::error::Result;
 
 fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
@@ -17,12 +18,13 @@ fn is_skipped(line: &[u8]) -> bool {
     line.iter().find(|byte| !byte.is_ascii_whitespace()).is_none_or(|byte| *byte == b'*')
 }
 
+fn whole<T: FromStr>(word: &[u8]) -> Option<T> {
+    std::str::from_utf8(word).ok()?.parse().ok()
+}
+
 fn entry(line: &[u8]) -> Option<(Label, Label, f64)> {
     let mut words = words(line);
-    let mut label = || -> Option<Label> {
-        let text = |word: &[u8]| std::str::from_utf8(word).ok().map(str::to_string);
-        Some((text(words.next()?)?.parse().ok()?, text(words.next()?)?.parse().ok()?))
-    };
+    let mut label = || -> Option<Label> { Some((whole(words.next()?)?, whole(words.next()?)?)) };
     let (row, column) = (label()?, label()?);
     let value = number(words.next()?)?;
     words.next().is_none().then_some((row, column, value))

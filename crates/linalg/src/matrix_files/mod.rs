@@ -26,16 +26,19 @@ use stridor_base::error::read::{plain, read_bytes};
 struct Row {
     /// Whether a file is of this format.
     is: fn(&[u8]) -> bool,
+    /// Whether its rows are of nodes.
+    labelled: bool,
     read: fn(&File) -> Result<Found>,
 }
 
 const FORMATS: &[Row] = &[
-    Row { is: abaqus::is, read: abaqus::read },
-    Row { is: dmig::is, read: dmig::read },
-    Row { is: op4::is, read: op4::read },
+    Row { is: abaqus::is, labelled: true, read: abaqus::read },
+    Row { is: dmig::is, labelled: true, read: dmig::read },
+    Row { is: op4::is, labelled: false, read: op4::read },
     // The rest, with a fault where the file does not begin as it should.
     Row {
         is: |_| true,
+        labelled: false,
         read: |file| matrix_market::parse(file.name, file.bytes, file.known).map(Found::Whole),
     },
 ];
@@ -63,23 +66,35 @@ pub fn read(path: &Path, initial: char, known: usize) -> Result<Found> {
 /// ```
 pub fn parse(name: &str, bytes: &[u8], initial: char, known: usize) -> Result<Found> {
     let bytes = &*plain(bytes);
-    let row = FORMATS.iter().find(|row| (row.is)(bytes)).unwrap_or(&FORMATS[FORMATS.len() - 1]);
-    (row.read)(&File { name, bytes, initial, known })
+    (row_of(bytes).read)(&File { name, bytes, initial, known })
 }
 
-/// Whether the rows of the matrices in the file at `path` are of nodes.
+fn row_of(bytes: &[u8]) -> &'static Row {
+    FORMATS.iter().find(|row| (row.is)(bytes)).unwrap_or(&FORMATS[FORMATS.len() - 1])
+}
+
+/// Reads the matrix in the file at `path` as [`read`] does, if its rows are of nodes; none of another file, or one that cannot be read.
 ///
 /// # Errors
-/// A file that cannot be read.
-pub fn is_labelled(path: &Path) -> Result<bool> {
+/// Every fault of the file with its line.
+pub fn read_labelled(path: &Path, initial: char) -> Result<Option<Labelled>> {
+    // MatrixMarket's, the largest of all, are known by their first characters.
     let mut first = [0; 2];
     let begins = std::fs::File::open(path).and_then(|mut file| file.read_exact(&mut first));
     if begins.is_ok() && first == *b"%%" {
-        return Ok(false);
+        return Ok(None);
     }
-    let bytes = read_bytes(path, "a file with a matrix")?;
+    let Ok(bytes) = read_bytes(path, "a file with a matrix") else { return Ok(None) };
     let bytes = &*plain(&bytes);
-    Ok(abaqus::is(bytes) || dmig::is(bytes))
+    let row = row_of(bytes);
+    if !row.labelled {
+        return Ok(None);
+    }
+    let name = path.display().to_string();
+    match (row.read)(&File { name: &name, bytes, initial, known: 0 })? {
+        Found::Labelled(matrix) => Ok(Some(matrix)),
+        Found::Whole(_) => Ok(None),
+    }
 }
 
 #[cfg(test)]

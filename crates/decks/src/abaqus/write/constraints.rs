@@ -59,12 +59,17 @@ impl Writer<'_> {
         }
     }
 
+    /// The name of the k-th tie, coupling or contact: its own, or one of its kind.
+    fn interaction(&mut self, own: &str, kind: &str, k: usize) -> String {
+        let numbered = format!("{kind}_{}", k + 1);
+        self.interactions.free(if own.is_empty() { &numbered } else { own })
+    }
+
     /// *TIE. Gaps are kept.
     pub(super) fn ties(&mut self) {
         let deck = self.deck;
         for (k, tie) in deck.ties.iter().enumerate() {
-            let name = if tie.name.is_empty() { format!("TIE_{}", k + 1) } else { tie.name.clone() };
-            let name = self.interactions.free(&name);
+            let name = self.interaction(&tie.name, "TIE", k);
             let within =
                 tie.within.map_or(String::new(), |gap| format!(", POSITION TOLERANCE={}", number(gap)));
             self.line(format!("*TIE, NAME={name}{within}, ADJUST=NO"));
@@ -78,9 +83,7 @@ impl Writer<'_> {
         let deck = self.deck;
         let rotates = rotates(deck);
         for (k, coupling) in deck.couplings.iter().enumerate() {
-            let name =
-                if coupling.name.is_empty() { format!("COUPLING_{}", k + 1) } else { coupling.name.clone() };
-            let name = self.interactions.free(&name);
+            let name = self.interaction(&coupling.name, "COUPLING", k);
             let surface = coupling.of.as_ref().and_then(|of| deck.surface(of));
             let surface = match surface {
                 Some(surface) => self.surfaces.of(&surface.name),
@@ -119,9 +122,7 @@ impl Writer<'_> {
     pub(super) fn contacts(&mut self) {
         let deck = self.deck;
         for (k, contact) in deck.contacts.iter().enumerate() {
-            let name =
-                if contact.name.is_empty() { format!("CONTACT_{}", k + 1) } else { contact.name.clone() };
-            let name = self.interactions.free(&name);
+            let name = self.interaction(&contact.name, "CONTACT", k);
             self.line(format!("*SURFACE INTERACTION, NAME={name}"));
             match contact.stiffness {
                 Some(stiffness) => {
