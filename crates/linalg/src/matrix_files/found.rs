@@ -2,6 +2,7 @@
 
 use crate::c64;
 use crate::matrix_market::{Entry, Header, LARGEST, MarketMatrix, Symmetry, TOLD, compress};
+use rayon::prelude::*;
 use std::collections::BTreeSet;
 use stridor_base::error::{Error, Fault, Faults, Result};
 
@@ -17,7 +18,7 @@ pub enum Found {
     Labelled(Labelled),
 }
 
-/// A matrix whose rows are of nodes.
+/// A matrix whose rows are of nodes; no place has two entries.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Labelled {
     /// Row, column, value; of a column of a rectangular matrix its number stands for the node.
@@ -26,8 +27,10 @@ pub struct Labelled {
     pub complex: bool,
     /// Whether its columns are no rows.
     pub rectangular: bool,
+    /// Whether each entry off the diagonal stands for its mirror image, too.
+    half: bool,
     /// Where it stands.
-    pub(super) place: String,
+    place: String,
 }
 
 /// A file in memory.
@@ -38,6 +41,84 @@ pub(super) struct File<'f> {
     pub initial: char,
     /// The number of columns that another file confirms.
     pub known: usize,
+}
+
+/// What a file says of the entries above and below the diagonal.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Triangles {
+    /// The columns are no rows.
+    Rectangular,
+    /// All entries are there.
+    Both,
+    /// Of a symmetric matrix, one of each pair or both.
+    Symmetric,
+    /// Nothing: where no entry off the diagonal has its mirror image, it is half of a symmetric matrix.
+    Unsaid,
+}
+
+/// The entries of a matrix by nodes while they are read, each with its line.
+#[derive(Debug, Default)]
+pub(super) struct Entries {
+    pub all: Vec<(Label, Label, c64)>,
+    pub lines: Vec<u32>,
+}
+
+impl Entries {
+    pub fn push(&mut self, row: Label, column: Label, value: c64, line: usize) {
+        self.all.push((row, column, value));
+        self.lines.push(u32::try_from(line).unwrap_or(u32::MAX));
+    }
+
+    /// The matrix, whose name is `name` if the file gives it one. A place that is given twice and, of a symmetric matrix, two halves that
+    /// differ are faults.
+    pub fn into_matrix(
+        mut self,
+        file: &File,
+        name: &str,
+        triangles: Triangles,
+        complex: bool,
+        wrong: &mut Wrong,
+    ) -> Labelled {
+        let rectangular = triangles == Triangles::Rectangular;
+        let sorted = |k: u32| {
+            let (row, column, _) = self.all[k as usize];
+            if rectangular { (row, column) } else { (row.max(column), row.min(column)) }
+        };
+        let upper = |k: u32| self.all[k as usize].0 < self.all[k as usize].1;
+        let mut order: Vec<u32> = (0..self.all.len() as u32).collect();
+        order.par_sort_unstable_by_key(|k| (sorted(*k), !rectangular && upper(*k), *k));
+        let mut mirrored = Vec::new();
+        for two in order.windows(2).filter(|two| sorted(two[0]) == sorted(two[1])) {
+            let [first, second] = [two[0].min(two[1]), two[0].max(two[1])].map(|k| k as usize);
+            let ((row, column, value), (other_row, _, other)) = (self.all[second], self.all[first]);
+            if row != other_row && !rectangular {
+                mirrored.push(second);
+                if triangles != Triangles::Symmetric || value == other {
+                    continue;
+                }
+            }
+            let found = format!(
+                "row {}, {} of column {}, {} a second time, after line {}",
+                row.0, row.1, column.0, column.1, self.lines[first]
+            );
+            let expected =
+                if row == other_row { "every entry once" } else { "the value of its mirror image" };
+            wrong.push(format!("{}:{}", file.name, self.lines[second]), found, expected);
+        }
+        let half = match triangles {
+            Triangles::Symmetric => true,
+            Triangles::Unsaid => mirrored.is_empty(),
+            Triangles::Both | Triangles::Rectangular => false,
+        };
+        if half && !mirrored.is_empty() {
+            let mut keep = vec![true; self.all.len()];
+            mirrored.into_iter().for_each(|k| keep[k] = false);
+            let mut keep = keep.into_iter();
+            self.all.retain(|_| keep.next().unwrap_or(true));
+        }
+        let place = if name.is_empty() { file.name.to_string() } else { format!("{} {name}", file.name) };
+        Labelled { entries: self.all, complex, rectangular, half, place }
+    }
 }
 
 impl Labelled {
@@ -79,26 +160,10 @@ impl Labelled {
             };
             entries.push(Entry { row: i, column: j, value: *value });
         }
-        let square = !self.rectangular;
-        Ok(completed(entries, [labels.len(), columns.len()], self.complex, square))
+        let symmetry = if self.half { Symmetry::Symmetric } else { Symmetry::General };
+        let header = Header { coordinate: true, complex: self.complex, symmetry };
+        Ok(compress(&entries, header, labels.len(), columns.len()))
     }
-}
-
-/// The matrix of some entries. Where no entry off the diagonal has its mirror image, it is half of a symmetric one, and they are added.
-pub(super) fn completed(
-    entries: Vec<Entry>,
-    [rows, columns]: [usize; 2],
-    complex: bool,
-    square: bool,
-) -> MarketMatrix {
-    let off =
-        || entries.iter().filter(|entry| entry.row != entry.column).map(|entry| (entry.row, entry.column));
-    let mut places: Vec<(u32, u32)> = if square { off().collect() } else { Vec::new() };
-    places.sort_unstable();
-    let half = places.iter().all(|(row, column)| places.binary_search(&(*column, *row)).is_err());
-    let symmetry = if half && !places.is_empty() { Symmetry::Symmetric } else { Symmetry::General };
-    drop(places);
-    compress(&entries, Header { coordinate: true, complex, symmetry }, rows, columns)
 }
 
 /// The matrix that is wanted of several by their names: of a set of NASTRAN, as KAA, KGG and KXX are, or the one that begins so.

@@ -5,9 +5,10 @@
 //! | MatrixMarket ([`super::matrix_market`]) | by number | real, complex |
 //! | Abaqus, \*MATRIX GENERATE with \*MATRIX OUTPUT, `node,dof, node,dof, value` | by node and degree of freedom | real |
 //! | NASTRAN, DMIG in small, large and free fields | by grid point and component | real, complex |
-//! | NASTRAN, OUTPUT4 as text | by number | real, complex |
+//! | NASTRAN, OUTPUT4 as text and binary | by number | real, complex |
 //!
-//! Of a symmetric matrix these may hold half: where no entry off the diagonal has its mirror image, these are added.
+//! A symmetric matrix may be half of one: its file says so by a form or a type. Where an Abaqus file does not, the mirror images are added if no
+//! entry off the diagonal has one.
 
 mod abaqus;
 mod dmig;
@@ -17,29 +18,47 @@ mod op4;
 use super::matrix_market;
 use found::File;
 pub use found::{Found, Label, Labelled};
+use std::borrow::Cow;
 use std::io::Read;
 use std::path::Path;
-use stridor_base::error::Result;
 use stridor_base::error::read::{plain, read_bytes};
+use stridor_base::error::{Error, Fault, Result};
 
 /// A row of the table.
 struct Row {
     /// Whether a file is of this format.
     is: fn(&[u8]) -> bool,
+    /// How it begins.
+    begins: &'static str,
     /// Whether its rows are of nodes.
     labelled: bool,
     read: fn(&File) -> Result<Found>,
 }
 
 const FORMATS: &[Row] = &[
-    Row { is: abaqus::is, labelled: true, read: abaqus::read },
-    Row { is: dmig::is, labelled: true, read: dmig::read },
-    Row { is: op4::is, labelled: false, read: op4::read },
-    // The rest, with a fault where the file does not begin as it should.
     Row {
-        is: |_| true,
+        is: |bytes| bytes.trim_ascii_start().starts_with(b"%%"),
+        begins: "`%%MatrixMarket matrix coordinate real symmetric` (MatrixMarket)",
         labelled: false,
         read: |file| matrix_market::parse(file.name, file.bytes, file.known).map(Found::Whole),
+    },
+    Row {
+        is: abaqus::is,
+        begins: "`*MATRIX INPUT` or `1,1, 1,1, 4.0e+00`: node, degree of freedom, node, degree of freedom, value (Abaqus)",
+        labelled: true,
+        read: abaqus::read,
+    },
+    Row {
+        is: dmig::is,
+        begins: "cards `DMIG    KAAX    0       6       2` (NASTRAN DMIG)",
+        labelled: true,
+        read: dmig::read,
+    },
+    Row {
+        is: op4::is,
+        begins: "columns, rows, form, kind, name and form of numbers `1P,3E23.16`, or a binary record of 24 bytes (NASTRAN OUTPUT4)",
+        labelled: false,
+        read: op4::read,
     },
 ];
 
@@ -65,12 +84,25 @@ pub fn read(path: &Path, initial: char, known: usize) -> Result<Found> {
 /// assert_eq!((k.re[(0, 0)], k.re[(0, 1)], k.re[(1, 0)]), (3.0, -1.5, -1.5));
 /// ```
 pub fn parse(name: &str, bytes: &[u8], initial: char, known: usize) -> Result<Found> {
-    let bytes = &*plain(bytes);
-    (row_of(bytes).read)(&File { name, bytes, initial, known })
+    let bytes = &*text(bytes);
+    let Some(row) = row_of(bytes) else {
+        let first = bytes.trim_ascii_start().split(|byte| *byte == b'\n').next().unwrap_or_default();
+        let found =
+            if first.is_empty() { "no text".into() } else { format!("`{}`", matrix_market::shown(first)) };
+        let kinds: Vec<&str> = FORMATS.iter().map(|row| row.begins).collect();
+        let fault = Fault::new(format!("{name}:1"), found, "the begin of one of four kinds of files");
+        return Err(Error::input(fault.with_help(format!("They begin with {}", kinds.join("; ")))));
+    };
+    (row.read)(&File { name, bytes, initial, known })
 }
 
-fn row_of(bytes: &[u8]) -> &'static Row {
-    FORMATS.iter().find(|row| (row.is)(bytes)).unwrap_or(&FORMATS[FORMATS.len() - 1])
+/// The bytes of a binary file as they are, of another one as plain text.
+fn text(bytes: &[u8]) -> Cow<'_, [u8]> {
+    if op4::is_binary(bytes) { Cow::Borrowed(bytes) } else { plain(bytes) }
+}
+
+fn row_of(bytes: &[u8]) -> Option<&'static Row> {
+    FORMATS.iter().find(|row| (row.is)(bytes))
 }
 
 /// Reads the matrix in the file at `path` as [`read`] does, if its rows are of nodes; none of another file, or one that cannot be read.
@@ -85,11 +117,8 @@ pub fn read_labelled(path: &Path, initial: char) -> Result<Option<Labelled>> {
         return Ok(None);
     }
     let Ok(bytes) = read_bytes(path, "a file with a matrix") else { return Ok(None) };
-    let bytes = &*plain(&bytes);
-    let row = row_of(bytes);
-    if !row.labelled {
-        return Ok(None);
-    }
+    let bytes = &*text(&bytes);
+    let Some(row) = row_of(bytes).filter(|row| row.labelled) else { return Ok(None) };
     let name = path.display().to_string();
     match (row.read)(&File { name: &name, bytes, initial, known: 0 })? {
         Found::Labelled(matrix) => Ok(Some(matrix)),

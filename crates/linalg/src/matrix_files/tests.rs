@@ -46,17 +46,17 @@ DMIG*   MAAX                           7               1
 /// Small and free fields, complex, by amplitude and phase.
 const POLAR: &str = "DMIG    B2      0       1       3       0       1\nDMIG,b2,1,1,,1,1,2.,90.\n,2,1,1.,0.\n\
 DMIG    B2      2       1               2       1       3.0     180.\n";
-/// Dense and sparse columns of OUTPUT4; values that touch.
+/// A dense column and sparse ones of OUTPUT4; values that touch.
 const OUTPUT4: &str = r"       3       3       6       2K       1P,3E23.16
        1       1       2
  4.0000000000000000E+00-1.5000000000000000E+00
-       2       0       6
-  131073
+       2       0       8
+  327681
 -1.5000000000000000E+00 8.0000000000000000E+00
-   65539
+  196611
  2.5000000000000000E+00
        3       0       3
-       2       3
+  196611
  1.0000000000000000E+00
        4       1       1
  1.0000000000000000E+00
@@ -71,7 +71,7 @@ fn every_format_is_known_by_how_it_begins() {
     assert_eq!(rows(&read(LARGE, 'M').re), [[2.0]]);
     // K4AA is structural damping.
     assert_eq!(
-        rows(&read(&format!("{LARGE}{}", LARGE.replace("KAAX", "K4AA")), 'K').re),
+        rows(&read(&format!("{LARGE}{}", LARGE.replace("KAAX", "K4AA").replace("MAAX", "BAAX")), 'K').re),
         [[4.0, -1.5], [-1.5, 8.0]]
     );
     let polar = read(POLAR, 'B');
@@ -81,7 +81,7 @@ fn every_format_is_known_by_how_it_begins() {
     {
         assert!(within((found - wanted).abs(), 1e-14, RoundOff), "{found} {wanted}");
     }
-    // Column 2 has rows 1, 2 and 3; the third string has the row 3, of many rows.
+    // Column 2 has rows 1, 2 and 3. Both halves hold entries, so that nothing is added.
     assert_eq!(rows(&read(OUTPUT4, 'K').re), [[4.0, -1.5, 0.0], [-1.5, 8.0, 0.0], [0.0, 2.5, 1.0]]);
     let market =
         "%%MATRIXMARKET MATRIX COORDINATE REAL SYMMETRIC\r\n% a\r\n\r\n2 2 2\r\n1 1 3.0\r\n2 1 -1.5\r\n";
@@ -117,18 +117,173 @@ fn faults_have_file_and_line() {
             "finite",
         ),
         ("DMIG    K       0       6       7\n", "a:1", "kind"),
-        ("DMIG    K       1       1               1       1       1.\n", "a K", "columns alone"),
+        ("DMIG    K       1       1               1       1       1.\n", "a:1", "no header"),
         ("DMIG    A       0       6       2\nDMIG    B       0       6       2\n", "a", "2 matrices: A, B"),
-        (&OUTPUT4.replace("       4       1       1\n", "       1       1       1\n"), "a:", "ends K"),
-        (&OUTPUT4.replace("   65539\n", "   65549\n"), "a:8", "rows to 3"),
-        (&OUTPUT4.replace("8.0000000000000000E+00", "8.0000000000000000X+00"), "a:6", "finite numbers"),
-        ("no matrix\n", "a:1", "MatrixMarket"),
+        (&OUTPUT4.replace("8.0000000000000000E+00", "8.0000000000000000X+00"), "a:6", "2 more numbers"),
+        ("*MATRIX INPUT, NAME=K, SCALE FACTOR=x\n1,1, 1,1, 2.\n", "a:1", "SCALEFACTOR=X"),
+        ("*MATRIX INPUT, NAME=K, INPUT=k.mtx\n", "a:1", "the entries below"),
+        (
+            "*MATRIX INPUT, NAME=K\n1,1, 1,1, 2.\n*MATRIX INPUT, NAME=K\n1,1, 1,1, 2.\n",
+            "a",
+            "2 matrices: K, K",
+        ),
     ] {
         let text = wrong(text);
         assert!(text.contains(place) && text.contains(words), "{text}");
     }
-    let binary = parse("a", &[24, 0, 0, 0, 1, 2, 3], 'K', 0).unwrap_err().to_string();
-    assert!(binary.contains("FORMATTED"), "{binary}");
+}
+
+/// A file of no known kind: the fault has how each of them begins.
+#[test]
+fn an_unknown_kind_of_file_names_those_that_are_read() {
+    for text in
+        ["", "no matrix\n", "1 1 4.0\n", "%MatrixMarket\n", "1,1, 1,1\n", "DMI     K\n", "PK\u{3}\u{4}"]
+    {
+        let text = wrong(text);
+        for words in ["a:1: found", "%%MatrixMarket", "*MATRIX INPUT", "DMIG", "1P,3E23.16"] {
+            assert!(text.contains(words), "{text}");
+        }
+    }
+}
+
+/// \*MATRIX INPUT: names, factor, and the type, by which half of a matrix is told from a whole one.
+#[test]
+fn keywords_of_abaqus_are_read() {
+    let text = "*Matrix Input, name=M\n1,1, 1,1, 1.\n*MATRIX INPUT, NAME=K, TYPE=UNSYMMETRIC, SCALE FACTOR=2.\n\
+                1,1, 1,1, 3.\n2,1, 1,1, 1.5\n";
+    assert_eq!(rows(&read(text, 'K').re), [[6.0, 0.0], [3.0, 0.0]]);
+    assert_eq!(rows(&read(&text.replace("UNS", "S"), 'K').re), [[6.0, 3.0], [3.0, 0.0]]);
+    assert_eq!(rows(&read(text, 'M').re), [[1.0]]);
+}
+
+/// Entries of Abaqus, of DMIG in small and large fields, of a matrix of a form or a type: place, place and value.
+fn written(entries: &[(i64, u8, i64, u8, f64)], style: usize, symmetric: bool) -> (String, Vec<usize>) {
+    let form = if symmetric { 6 } else { 1 };
+    let mut text = match style {
+        0 => format!("*MATRIX INPUT, NAME=K, TYPE={}SYMMETRIC\n", if symmetric { "" } else { "UN" }),
+        _ => format!("DMIG    K       0       {form}       2\n"),
+    };
+    let mut lines = Vec::new();
+    for (i, c, j, d, value) in entries {
+        text += &match style {
+            0 => format!("{i},{c}, {j},{d}, {value:e}\n"),
+            1 => format!("DMIG    K       {j:<8}{d:<16}{i:<8}{c:<8}{value:<8}\n"),
+            2 => format!("DMIG*   K               {j:<16}{d:<16}\n*       {i:<16}{c:<16}{value:<16}\n"),
+            _ => format!("DMIG,K,{j},{d},,{i},{c},{value}\n"),
+        };
+        lines.push(text.lines().count());
+    }
+    (text, lines)
+}
+
+const ENTRIES: [(i64, u8, i64, u8, f64); 6] = [
+    (1, 1, 1, 1, 4.0),
+    (2, 3, 1, 1, -1.5),
+    (2, 3, 2, 3, 8.0),
+    (7, 2, 1, 1, 0.25),
+    (1, 1, 7, 1, 0.5),
+    (7, 2, 7, 2, 3.0),
+];
+
+/// Every entry given once more, and above the diagonal what is below it.
+#[test]
+fn an_entry_that_is_given_twice_is_a_fault() {
+    for style in 0..4 {
+        for symmetric in [false, true] {
+            let whole = read(&written(&ENTRIES, style, symmetric).0, 'K').re.to_dense();
+            for k in 0..ENTRIES.len() {
+                for (value, mirrored) in [(1.0, false), (1.0, true), (2.0, true)] {
+                    let (i, c, j, d, v) = ENTRIES[k];
+                    let again = if mirrored { (j, d, i, c, value * v) } else { (i, c, j, d, v) };
+                    let (text, lines) = written(&[&ENTRIES[..], &[again]].concat(), style, symmetric);
+                    let diagonal = (i, c) == (j, d);
+                    if mirrored && !diagonal && (value == 1.0 || !symmetric) {
+                        let found = read(&text, 'K').re.to_dense();
+                        assert!(!symmetric || found == whole, "{text}");
+                        continue;
+                    }
+                    let message = wrong(&text);
+                    let places = [format!("a:{}", lines[ENTRIES.len()]), format!("after line {};", lines[k])];
+                    assert!(places.iter().all(|place| message.contains(place)), "{text}\n{message}");
+                    assert!(
+                        message.contains(if mirrored && !diagonal { "mirror" } else { "once" }),
+                        "{message}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// Every field of every card of DMIG left out: a fault in that line, or of the point whose component is missing.
+#[test]
+fn a_card_with_a_field_left_out_is_a_fault() {
+    for style in 1..4 {
+        let (text, _) = written(&ENTRIES, style, true);
+        let lines: Vec<&str> = text.lines().collect();
+        for (at, line) in lines.iter().enumerate().skip(1) {
+            let fields = if style == 3 { line.split(',').count() } else { line.len().div_ceil(8) };
+            // All fields after the name of the matrix.
+            let first = if line.starts_with('*') { 1 } else { 2 };
+            for k in first..fields {
+                let shorter = if style == 3 {
+                    let mut fields: Vec<&str> = line.split(',').collect();
+                    if std::mem::take(&mut fields[k]).is_empty() {
+                        continue;
+                    }
+                    fields.join(",")
+                } else {
+                    let step = if style == 2 { 16 } else { 8 };
+                    let from = 8 + (8 * k - 8) / step * step;
+                    let to = (from + step).min(line.len());
+                    if line[from..to].trim().is_empty() {
+                        continue;
+                    }
+                    format!("{}{}{}", &line[..from], " ".repeat(to - from), &line[to..])
+                };
+                if shorter.split([',', ' ']).filter(|word| !word.is_empty()).nth(1) != Some("K") && first == 2
+                {
+                    continue;
+                }
+                let mut lines = lines.clone();
+                lines[at] = &shorter;
+                let message = wrong(&(lines.join("\n") + "\n"));
+                let (near, card) = (format!("a:{}:", at + 1), format!("a:{at}:"));
+                let mixed = message.contains("of a scalar point");
+                assert!(message.contains(&near) || message.contains(&card) || mixed, "{shorter}\n{message}");
+            }
+        }
+    }
+}
+
+#[test]
+fn cut_and_empty_matrices_of_dmig_are_faults() {
+    let header = "DMIG    K       0       6       2\n";
+    let card =
+        |mark: &str| format!("{:<72}{mark}\n", "DMIG    K       1       1               1       1       4.0");
+    for (text, words) in [
+        (header.to_string(), "without columns"),
+        (format!("{header}DMIG*   K               1               1\n"), "column 1, 1 without rows"),
+        (header.to_string() + &card("+A"), "the line that continues the card"),
+        (format!("{header}DMIG,K,1,1,,1,1,4.,,+\n"), "the line that continues the card"),
+        (format!("{header}DMIG,K,1,1,,1,1,4.,,5\n"), "after the last field"),
+        (format!("{header}DMIG,K,1,1,1,1,4.\n"), "a blank field"),
+        (format!("{header}DMIG,K,1,1,,1,1,4.,5.\n"), "one finite number"),
+        (header.replace("2\n", "4\n") + "DMIG,K,1,1,,1,1,4.\n", "two finite numbers"),
+        (format!("*       1               1               4.0\n{header}"), "a card before"),
+        (format!("{header}{header}{}", card("")), "second header"),
+    ] {
+        let message = wrong(&text);
+        assert!(message.contains(words) && message.contains("a:"), "{text}\n{message}");
+    }
+    // A mark in field 10 where the card does go on, and one of a matrix before the last card.
+    let goes_on = header.to_string() + &card("+A") + "+A      2       1       -1.\n";
+    assert_eq!(rows(&read(&goes_on, 'K').re), [[4.0, -1.0], [-1.0, 0.0]]);
+    // Of a general form one triangle is no half.
+    assert_eq!(
+        rows(&read(&goes_on.replace("6       2\n", "1       2\n"), 'K').re),
+        [[4.0, 0.0], [-1.0, 0.0]]
+    );
 }
 
 /// Files cut at every byte, with every byte changed, and with numbers that are far too large: a fault or a matrix, and no panic.
