@@ -1,5 +1,6 @@
 //! `stridor export`: a case as matrices, or as a model of another program.
 
+use super::mesh::refuse_existing;
 use super::output::{Common, SUCCESS, give, say};
 use crate::case::{Case, read_case};
 use crate::decks::{self, Format, Weight};
@@ -21,14 +22,22 @@ pub struct ExportOptions {
     /// The contacts as terms of C and K, linearised at steady sliding: the matrices of small motions
     #[arg(long)]
     linearised: bool,
+    /// Overwrite an existing file of a model
+    #[arg(long)]
+    force: bool,
 }
 
 pub fn run(options: &ExportOptions, common: &Common) -> Result<u8> {
     let case = read_case(&options.case)?;
     let out = &options.out;
     keeps_the_case(&options.case, out)?;
-    match Format::of_path(out).ok().filter(|format| format.is_written() && !out.is_dir()) {
-        Some(format) if !options.linearised => model(&case, format, out, common),
+    match format_of(out)? {
+        Some(format) if !options.linearised => {
+            if !options.force {
+                refuse_existing(out, "`--force` overwrites it")?;
+            }
+            model(&case, format, out, common)
+        }
         Some(_) => {
             let help = "Leave --linearised out, or give --out the name of a folder";
             let fault =
@@ -37,6 +46,23 @@ pub fn run(options: &ExportOptions, common: &Common) -> Result<u8> {
         }
         None => matrices(&case, options, common),
     }
+}
+
+/// The format of the file that is to be written; none for a folder, whose name has no ending, or one of digits as in `run-1.5`.
+fn format_of(out: &Path) -> Result<Option<Format>> {
+    let ending = out.extension().unwrap_or_default().to_string_lossy();
+    let format = Format::of_path(out).ok().filter(|format| format.is_written());
+    if ending.bytes().all(|byte| byte.is_ascii_digit()) || format.is_none() && out.is_dir() {
+        return Ok(None);
+    }
+    let found = match format {
+        Some(format) if !out.is_dir() => return Ok(Some(format)),
+        Some(_) => format!("`{}`, a folder with the name of a file", out.display()),
+        None => format!("`{}`, which ends in `.{ending}`", out.display()),
+    };
+    let expected =
+        format!("a file that ends in {}, or a folder without an ending", Format::written_endings());
+    Err(Error::input(Fault::new("--out", found, expected)))
 }
 
 /// Fails where a case that no export wrote would be written over: the one that is exported, or another in the folder.

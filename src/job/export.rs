@@ -33,7 +33,7 @@ pub enum ContactAs {
 /// and `case.toml` into the folder `out`, with the files of what was measured as `measured_NAME`. That case gives the same
 /// eigenvalues as the one it came from.
 ///
-/// Loss factors are the imaginary part of the stiffness. Modal damping stays a key of the case. What depends on the
+/// Loss factors are the imaginary part of the stiffness. Modal damping stays a key of the case, and no part of C. What depends on the
 /// state (the stiffness of the preload, but in the matrices of small motions) and what asks for a part, a region or a scalar that matrices do not have is left out;
 /// the returned sentences say so.
 ///
@@ -41,11 +41,19 @@ pub enum ContactAs {
 /// Faults of the case, no steady sliding where it is asked for, or a folder that cannot be written.
 pub fn export(case: &Case, contact: ContactAs, out: &Path) -> Result<Vec<String>> {
     let prepared = Prepared::new(case)?;
-    let _lock = FolderLock::take(out)?;
+    let lock = FolderLock::take(out)?;
+    let left_out = write_all(&prepared, contact, out);
+    lock.remove(out);
+    left_out
+}
+
+/// Writes what [`export`] does.
+fn write_all(prepared: &Prepared, contact: ContactAs, out: &Path) -> Result<Vec<String>> {
+    let case = prepared.case;
     let system = &prepared.system;
     let linearised = contact == ContactAs::Matrices;
     let ConstantMatrices { mass, damping, stiffness, loss } =
-        if linearised { small_motions(&prepared)? } else { system.constant_matrices()? };
+        if linearised { small_motions(prepared)? } else { system.constant_matrices()? };
     let write = |name: &str, text: String| write_atomically(out, name, text.as_bytes());
     let title = &case.title;
     write("mass.mtx", to_text(&mass, None, &format!("{title}: mass [kg, kg m2]")))?;
@@ -65,8 +73,8 @@ pub fn export(case: &Case, contact: ContactAs, out: &Path) -> Result<Vec<String>
     if let Some(load) = &load {
         write("load.mtx", to_text(load, None, &format!("{title}: external force [N, N m]")))?;
     }
-    write("dofs.csv", dofs(&prepared))?;
-    let points_files = points_files(&prepared);
+    write("dofs.csv", dofs(prepared))?;
+    let points_files = points_files(prepared);
     for pair in system.pairs.iter().filter(|_| !linearised) {
         write(&points_files[&pair.name], points(pair))?;
     }
@@ -91,6 +99,13 @@ pub fn export(case: &Case, contact: ContactAs, out: &Path) -> Result<Vec<String>
         keep(&mut exported.modes, &mut left_out, ("modes", "its closed contacts"), |modes| {
             modes.contact == ContactState::Open
         });
+        if case.damping.modal_ratio != 0.0 || !case.damping.modal_ratios.is_empty() {
+            left_out.push(
+                "The ratios of [damping] are no part of the exported C: the exported case gives them to the modes of its matrices, whose contacts \
+                 are closed, not to those of the structure alone, and its eigenvalues differ by that"
+                    .to_string(),
+            );
+        }
     }
     left_out.extend(keep_what_is_there(case, &mut exported));
     let mut names = FileNames::default();

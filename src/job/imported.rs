@@ -244,7 +244,7 @@ fn one_sided(place: &str, matrix: Option<&MarketMatrix>) -> Option<String> {
     let entries = if count == 1 { "the one entry" } else { "all entries" };
     let found = format!("{entries} off the diagonal ({count}) in the {triangle} triangle");
     let fault = Fault::new(place, found, "both triangles, or the lower one of a symmetric matrix");
-    let help = "If it is half of a symmetric matrix, its header has to say `symmetric` (`skew-symmetric` if its other half has \
+    let help = "If it is half of a symmetric matrix, its header has to say `symmetric` (form 6 of DMIG and OUTPUT4; `skew-symmetric` if its other half has \
                 the other sign), with the lower triangle in the file; if it is whole, all is well";
     Some(fault.with_help(help).warning())
 }

@@ -31,6 +31,12 @@ impl FolderLock {
         Ok(lock)
     }
 
+    /// Takes the file of the lock of the folder `dir` away, where nothing is resumed.
+    pub fn remove(self, dir: &Path) {
+        // One that is left locks nothing.
+        let _ = std::fs::remove_file(dir.join(LOCK));
+    }
+
     /// Locks what the file `name` of the folder `dir` stands for, called `what` in messages.
     pub(super) fn take_file(dir: &Path, name: &str, what: &str) -> Result<Self> {
         prepare_folder(dir)?;

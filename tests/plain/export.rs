@@ -53,7 +53,7 @@ fn written(mesh: &Mesh, case: &str, format: Format) -> Written {
     let case = read_case(&folder.path().join("case.toml")).unwrap_or_else(|error| panic!("{error}\n{text}"));
     let prepared = Prepared::new(&case).unwrap_or_else(|error| panic!("{error}\n{text}"));
     let own = frequencies(&prepared);
-    let decks::Written { text, left_out } = decks::write(&deck(&prepared).unwrap(), format).unwrap();
+    let decks::Written { text, left_out, .. } = decks::write(&deck(&prepared).unwrap(), format).unwrap();
     Written { folder, text, left_out, own }
 }
 
@@ -229,7 +229,7 @@ count = 3
     let written = written(&beam_and_pad(), case, Format::Abaqus);
     let rows: Vec<String> = written.left_out.rows().map(|row| format!("{}: {}", row.what, row.why)).collect();
     for words in
-        ["springs in a direction", "damping of modes", "a load of the pair", "sliding along", "a constant"]
+        ["springs in a direction", "damping of modes", "a load of 100 N", "sliding along", "a constant"]
     {
         assert!(rows.iter().any(|row| row.contains(words)), "{words}: {rows:?}");
     }
@@ -237,4 +237,47 @@ count = 3
         written.text.contains("*CONTACT PAIR, INTERACTION=rub")
             && written.text.contains("pad_z_min, beam_z_max")
     );
+    // What is lost stands in the file and in the case that it is imported as, where contact and support have their names.
+    assert!(written.text.contains("** Not written: contact.rub: a load of 100 N"), "{}", written.text);
+    let deck = decks::read_bytes("a", written.text.as_bytes(), Format::Abaqus).unwrap();
+    let made = convert(&deck, Units::named("m").unwrap()).unwrap();
+    for words in [
+        "[contact.rub]",
+        "[support.wall]",
+        "# Lost before it came here: a load of 100 N",
+        "springs in a direction",
+    ] {
+        assert!(made.case.contains(words), "{words}: {}", made.case);
+    }
+    assert!(made.page.contains("a load of 100 N"), "{}", made.page);
+}
+
+/// The number of modes is that of the band, or what the case asks for, and never more than there can be.
+#[test]
+fn the_number_of_modes_is_that_of_the_case() {
+    let asked = |analysis: &str| {
+        let parts = "[solid.beam]\nmaterial = \"steel\"\n[solid.pad]\nmaterial = \"steel\"\n[support.wall]\non = \"beam_x_min\"\n";
+        let written =
+            written(&beam_and_pad(), &format!("{parts}{analysis}[modes.all]\ncount = 9\n"), Format::Abaqus);
+        let mut lines = written.text.lines().skip_while(|line| *line != "*FREQUENCY");
+        let cells = lines.nth(1).unwrap_or_default().split(", ");
+        (cells.map(|cell| cell.parse().ok()).collect::<Vec<Option<f64>>>(), written.own)
+    };
+    let (cells, own) = asked("");
+    assert_eq!(cells, [Some(9.0)]);
+    // The pad, which nothing holds, has six modes at 0 Hz.
+    for k in [7, 8] {
+        let below = 0.5 * (own[k - 1] + own[k]);
+        let rub = "[contact.rub]\nbody = \"pad_z_min\"\ncounter = \"beam_z_max\"\napproach = 0\nsliding_velocity = 1\n\
+                   normal = { per = \"area\", stiffness = 1e12 }\nfriction = { law = \"coulomb\", mu0 = 0.4 }\n";
+        let (cells, _) = asked(&format!("{rub}[cea]\nband = [10, {below}]\n"));
+        assert_eq!(cells, [Some(k as f64), Some(10.0), Some(below)]);
+        let (cells, _) = asked(&format!("[modes.a]\nbelow = {below}\n"));
+        assert_eq!(cells, [Some(k as f64), None, Some(below)]);
+    }
+    // One brick that is held on one side: 12 nodes move.
+    let mesh = structured_box(CellKind::Hexahedron20, [0.1, 0.02, 0.01], [1, 1, 1]).unwrap();
+    let case =
+        "[solid.solid]\nmaterial = \"steel\"\n[support.wall]\non = \"x_min\"\n[modes.all]\ncount = 36\n";
+    assert!(written(&mesh, case, Format::Abaqus).text.contains("*FREQUENCY\n35\n"));
 }

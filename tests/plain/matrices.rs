@@ -209,6 +209,29 @@ fn an_exported_case_has_the_same_modes() {
     }
 }
 
+/// Damping ratios of modes are no part of C, which has them twice if the case that is written kept them beside: a sentence says which modes
+/// they are of.
+#[test]
+fn ratios_of_modes_are_no_part_of_an_exported_damping() {
+    let text = include_str!("../../validation/pad-on-disc/case.toml");
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("validation/pad-on-disc");
+    let exported = |more: &str, contact| {
+        let case = Case::parse("case.toml", &format!("{text}{more}"), root.clone()).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let sentences = export(&case, contact, folder.path()).unwrap();
+        let damping = std::fs::read(folder.path().join("damping.mtx")).unwrap_or_default();
+        (damping, sentences.iter().any(|sentence| sentence.contains("no part of the exported C")))
+    };
+    assert!(!text.contains("[damping]"));
+    for (contact, said) in [(ContactAs::Points, false), (ContactAs::Matrices, true)] {
+        let (without, none) = exported("", contact);
+        for ratios in ["modal_ratio = 0.01", "modal_ratios = [[1000, 0.01]]"] {
+            assert_eq!(exported(&format!("\n[damping]\n{ratios}\n"), contact), (without.clone(), said));
+        }
+        assert!(!none);
+    }
+}
+
 #[test]
 fn names_of_contacts_need_not_be_names_of_files() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("validation/two-dof/case.toml");

@@ -53,6 +53,8 @@ pub struct Deck {
     pub analyses: Vec<Analysis>,
     /// What was read in part or not at all.
     pub ledger: Ledger,
+    /// What the program that wrote the file says in comments that it could not write of its model, and why.
+    pub lost: Vec<(String, String)>,
 }
 
 /// A node.
@@ -252,6 +254,8 @@ pub enum Frame {
 /// Degrees of freedom that are held.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Support {
+    /// What a comment of the file calls it; may be empty.
+    pub title: String,
     /// The name of the set, if it is one.
     pub name: Option<String>,
     /// The nodes.
@@ -317,7 +321,7 @@ pub enum CouplingKind {
 /// Two surfaces that touch.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Contact {
-    /// Its name; may be empty.
+    /// Its name, if a comment of the file gives it one; else empty.
     pub name: String,
     /// The surface whose points may not enter the other.
     pub slave: String,

@@ -78,6 +78,11 @@ impl Format {
         self.row().write.is_some()
     }
 
+    /// `.inp (abaqus), .bdf, .dat (nastran)`: the endings of the formats that are written.
+    pub fn written_endings() -> String {
+        endings(|row| row.write.is_some())
+    }
+
     /// The names of all.
     pub fn names() -> impl Iterator<Item = &'static str> {
         FORMATS.iter().map(|row| row.name)
@@ -108,9 +113,7 @@ impl Format {
         if let Some(row) = FORMATS.iter().find(|row| row.endings.contains(&ending.as_str())) {
             return Ok(row.format);
         }
-        let all: Vec<_> =
-            FORMATS.iter().map(|row| format!(".{} ({})", row.endings.join(", ."), row.name)).collect();
-        let expected = format!("a file that ends in {}", all.join(", "));
+        let expected = format!("a file that ends in {}", endings(|_| true));
         let found = if ending.is_empty() {
             "a name without an ending".into()
         } else {
@@ -119,6 +122,13 @@ impl Format {
         let help = "Say what it is with --format";
         Err(Error::input(Fault::new(path.display().to_string(), found, expected).with_help(help)))
     }
+}
+
+/// `.inp (abaqus), .bdf, .dat (nastran)`: the endings of some formats.
+fn endings(some: impl Fn(&Row) -> bool) -> String {
+    let rows = FORMATS.iter().filter(|row| some(row));
+    let all: Vec<_> = rows.map(|row| format!(".{} ({})", row.endings.join(", ."), row.name)).collect();
+    all.join(", ")
 }
 
 /// Reads the model in a file, of a format that is said or that the ending of its name is of.

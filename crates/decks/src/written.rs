@@ -16,9 +16,49 @@ pub struct Written {
     pub text: String,
     /// What is left out, or written as the nearest thing that the format has.
     pub left_out: Ledger,
+    /// What of the model itself is lost, in sentences for comments of the file.
+    pub(crate) lost: Vec<String>,
+}
+
+/// How a comment begins that says what of a model is not in the file.
+pub(crate) const LOST: &str = "Not written: ";
+
+/// A text without line ends, for a comment.
+pub(crate) fn one_line(text: &str) -> String {
+    text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
+}
+
+/// What is lost and why, of such a comment.
+pub(crate) fn lost(comment: &str) -> Option<(String, String)> {
+    let (what, why) = comment.trim().strip_prefix(LOST)?.split_once(": ")?;
+    Some((what.to_string(), why.to_string()))
 }
 
 impl Written {
+    /// The beginning of what a deck becomes: what it lost already is in its ledger.
+    pub(crate) fn of(deck: &Deck) -> Self {
+        let mut written = Written { left_out: deck.ledger.clone(), ..Written::default() };
+        let matters = deck.ledger.rows().filter(|row| row.weight == Weight::Matters);
+        written.lost = matters.map(|row| format!("{LOST}{}: {}", row.what, row.why)).collect();
+        written
+    }
+
+    /// Notes what the file does not have of the model.
+    pub(crate) fn lose(&mut self, what: &str, why: &str) {
+        let comment = format!("{LOST}{what}: {why}");
+        if !self.lost.contains(&comment) {
+            self.lost.push(comment);
+        }
+        self.note(Weight::Matters, what, why);
+    }
+
+    /// Puts the comments on what is lost in at a byte of the text, each after `mark`.
+    pub(crate) fn insert_lost(&mut self, at: usize, mark: &str) {
+        let lines = self.lost.iter().map(|comment| format!("{mark}{}\n", one_line(comment)));
+        let comments: String = lines.collect();
+        self.text.insert_str(at, &comments);
+    }
+
     pub(crate) fn line(&mut self, line: impl AsRef<str>) {
         self.text += line.as_ref();
         self.text.push('\n');

@@ -28,9 +28,19 @@ impl Maker<'_> {
                 let why = "cubic stiffness, damping and pull of a contact are not written";
                 self.note(Weight::Matters, &what, why);
             }
-            if let Pressing::Load { .. } = contact.pressing {
-                let why = "a load of the pair is not written: push the bodies by forces";
-                self.note(Weight::Matters, &what, why);
+            match contact.pressing {
+                Pressing::Load { load } => {
+                    let why = format!(
+                        "a load of {load} N of the pair is not written: press the bodies together by forces"
+                    );
+                    self.note(Weight::Matters, &what, why);
+                }
+                Pressing::Approach { approach } if approach != 0.0 => {
+                    let why =
+                        format!("an approach of {approach} m of the pair is not written: move the bodies");
+                    self.note(Weight::Matters, &what, why);
+                }
+                Pressing::Approach { .. } => {}
             }
             let (slave, master) = (self.surface_of(&contact.body), self.surface_of(&contact.counter));
             self.deck.contacts.push(Contact {

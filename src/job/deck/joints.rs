@@ -110,6 +110,7 @@ impl Maker<'_> {
             let mut faults = Faults::new();
             let at = format!("`support.{name}.on`");
             let nodes = self.prepared.regions.nodes_of(&support.on, &at, &mut faults);
+            let title = name;
             let name = match &support.on[..] {
                 [one] => self.set_of(one, &nodes),
                 _ => self.set_of(name, &nodes),
@@ -122,8 +123,8 @@ impl Maker<'_> {
             }
             let mut add = |held: [bool; 6], frame| {
                 if held.contains(&true) {
-                    let (name, nodes) = (name.clone(), nodes.clone());
-                    self.deck.supports.push(Support { name, nodes, held, frame, place });
+                    let (title, name, nodes) = (title.clone(), name.clone(), nodes.clone());
+                    self.deck.supports.push(Support { title, name, nodes, held, frame, place });
                 }
             };
             add(held, Frame::Global);

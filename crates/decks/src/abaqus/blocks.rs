@@ -2,6 +2,7 @@
 
 use crate::deck::Place;
 use crate::text::Files;
+use crate::written::lost;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
@@ -16,6 +17,8 @@ pub(super) struct Blocks {
     pub blocks: Vec<Block>,
     /// Lines before the first keyword.
     pub before: Vec<Place>,
+    /// What comments say that was not written, and why.
+    pub lost: Vec<(String, String)>,
 }
 
 /// A keyword, its options and its lines of data.
@@ -23,6 +26,8 @@ pub(super) struct Blocks {
 pub(super) struct Block {
     /// Capitals without blanks: `SOLIDSECTION`.
     pub keyword: String,
+    /// The name that a comment above gives it.
+    pub title: String,
     /// Options in their order.
     pub options: Vec<BlockOption>,
     /// Lines of data, those of comments and blank ones among them.
@@ -146,19 +151,26 @@ impl Reader {
         let mut start = 0;
         // Whether the last block goes on with the next line of data.
         let mut goes_on = false;
+        let mut title = String::new();
         for (line, whole) in text.split_inclusive('\n').enumerate() {
             let begin = start;
             start += whole.len();
             let place = Place { file: number, line: 1 + line as u32 };
             let trimmed = whole.trim();
-            if trimmed.is_empty() || trimmed.starts_with("**") {
+            if trimmed.is_empty() {
+                continue;
+            }
+            if let Some(comment) = trimmed.strip_prefix("**") {
+                title = title_in(comment).unwrap_or(title);
+                self.all.lost.extend(lost(comment));
                 continue;
             }
             if let Some(words) = trimmed.strip_prefix('*') {
                 let mut parts = split(words);
                 let keyword = capitals(parts.next().unwrap_or_default());
                 let options = parts.filter_map(option).collect();
-                self.all.blocks.push(Block { keyword, options, spans: Vec::new(), place });
+                let title = std::mem::take(&mut title);
+                self.all.blocks.push(Block { keyword, title, options, spans: Vec::new(), place });
                 self.complete = !trimmed.ends_with(',');
                 goes_on = false;
             } else if !self.complete
@@ -242,6 +254,14 @@ impl Reader {
         }
         self.file(number, files)
     }
+}
+
+/// The name in a comment as Abaqus/CAE writes it: `Name: held Type: Displacement/Rotation`, `Interaction: rub`.
+fn title_in(comment: &str) -> Option<String> {
+    let comment = comment.trim();
+    let name =
+        comment.strip_prefix("Name: ").and_then(|rest| rest.split_once(" Type: ")).map(|(name, _)| name);
+    Some(name.or_else(|| comment.strip_prefix("Interaction: "))?.trim().to_string())
 }
 
 /// What stands between commas outside of quotation marks, without blanks around.

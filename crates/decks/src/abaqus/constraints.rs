@@ -28,7 +28,7 @@ impl Reader {
             let Some(held) = self.held(&row) else { continue };
             let is_number = row.cell(0).parse::<u64>().is_ok();
             let name = (!is_number).then(|| self.set_words(space, row.cell(0)));
-            self.support(name, nodes, held, row.place);
+            self.support((&found.block.title, name), nodes, held, row.place);
         }
     }
 
@@ -80,7 +80,13 @@ impl Reader {
     }
 
     /// Adds a support of nodes, apart by their frames; lines that follow each other and hold more of the same nodes are one.
-    fn support(&mut self, name: Option<String>, nodes: Vec<usize>, held: [bool; 6], place: Place) {
+    fn support(
+        &mut self,
+        (title, name): (&str, Option<String>),
+        nodes: Vec<usize>,
+        held: [bool; 6],
+        place: Place,
+    ) {
         let mut apart: Vec<(Frame, Vec<usize>)> = Vec::new();
         let mut known = HashMap::new();
         for node in nodes {
@@ -97,7 +103,8 @@ impl Reader {
                 last.held.iter_mut().zip(held).for_each(|(own, held)| *own |= held);
                 continue;
             }
-            self.deck.supports.push(Support { name: name.clone(), nodes, held, frame, place });
+            let (title, name) = (title.to_string(), name.clone());
+            self.deck.supports.push(Support { title, name, nodes, held, frame, place });
         }
     }
 

@@ -123,8 +123,17 @@ impl Reader {
             let (Some(slave), Some(master)) = (slave, master) else { continue };
             let closed = found.block.has("ADJUST");
             let tied = found.block.has("TIED");
-            let (interaction, place) = (interaction.clone(), row.place);
-            self.pending.push(PendingContact { slave, master, interaction, tied, closed, within, place });
+            let (title, interaction, place) = (found.block.title.clone(), interaction.clone(), row.place);
+            self.pending.push(PendingContact {
+                title,
+                slave,
+                master,
+                interaction,
+                tied,
+                closed,
+                within,
+                place,
+            });
         }
     }
 
@@ -147,9 +156,8 @@ impl Reader {
                 continue;
             }
             let Interaction { friction, stick, stiffness, .. } = law;
-            let name = pair.interaction;
             self.deck.contacts.push(Contact {
-                name,
+                name: pair.title,
                 slave,
                 master,
                 friction,

@@ -52,7 +52,7 @@ const KEYWORDS: &[Keyword] = &[
     keyword("CHANGE FRICTION", Rest, Reader::change_interaction, &["INTERACTION"], &[]),
     keyword("CHANGE SURFACE BEHAVIOR", Rest, Reader::change_interaction, &["INTERACTION"], &[]),
     keyword("CLOAD", Rest, Reader::concentrated, &["OP"], &["AMPLITUDE"]),
-    keyword("COMPLEX FREQUENCY", Rest, Reader::complex_frequency, &[], &["FRICTIONDAMPING", "CORIOLIS", "NORMALIZATION"]),
+    keyword("COMPLEX FREQUENCY", Rest, Reader::complex_frequency, &["FRICTIONDAMPING"], &["NORMALIZATION"]),
     keyword("CONTACT PAIR", Rest, Reader::contact_pair, &["INTERACTION", "ADJUST", "TIED"], &["TYPE", "SMALLSLIDING", "SLAVE", "MECHANICALCONSTRAINT", "EXTENSIONZONE", "NAME", "CPSET"]),
     keyword("COUPLING", Rest, Reader::coupling, &["REFNODE", "SURFACE", "CONSTRAINTNAME"], &[]),
     keyword("DAMPING", Rest, Reader::damping, &["ALPHA", "BETA", "STRUCTURAL"], &[]),
@@ -68,7 +68,7 @@ const KEYWORDS: &[Keyword] = &[
     keyword("END STEP", Rest, Reader::end_step, &[], &[]),
     keyword("EQUATION", Rest, Reader::equation, &["REMOVE"], &[]),
     keyword("FREQUENCY", Rest, Reader::frequency, &[], &["STORAGE", "SOLVER", "EIGENSOLVER", "NORMALIZATION", "ACOUSTICCOUPLING", "SIM", "RESIDUALMODES"]),
-    keyword("FRICTION", Rest, Reader::friction, &["ROUGH", "NONE", "EXPONENTIALDECAY"], &["SLIPTOLERANCE", "ELASTICSLIP", "TAUMAX"]),
+    keyword("FRICTION", Rest, Reader::friction, &["ROUGH", "NONE", "EXPONENTIALDECAY"], &[]),
     keyword("HEADING", Rest, Reader::heading, &[], &[]),
     keyword("KINEMATIC", Rest, Reader::kinematic, &[], &["ALPHA"]),
     keyword("KINEMATIC COUPLING", Rest, Reader::kinematic_coupling, &["REFNODE"], &[]),
@@ -84,13 +84,36 @@ const KEYWORDS: &[Keyword] = &[
     keyword("SHELL SECTION", Rest, Reader::shell_section, &["ELSET", "MATERIAL", "ORIENTATION", "COMPOSITE"], &["SECTIONINTEGRATION"]),
     keyword("SOLID SECTION", Rest, Reader::solid_section, &["ELSET", "MATERIAL", "ORIENTATION", "COMPOSITE"], &["CONTROLS"]),
     keyword("SPRING", Rest, Reader::spring, &["ELSET", "NONLINEAR", "ORIENTATION"], &[]),
-    keyword("STEP", Rest, Reader::begin_step, &[], &["NAME", "NLGEOM", "PERTURBATION", "INC", "UNSYMM", "AMPLITUDE"]),
+    keyword("STEP", Rest, Reader::begin_step, &[], &["NAME", "PERTURBATION", "INC", "UNSYMM", "AMPLITUDE"]),
     keyword("SURFACE", Surfaces, Reader::surface, &["NAME", "TYPE", "COMBINE", "INTERNAL"], &[]),
     keyword("SURFACE BEHAVIOR", Rest, Reader::behaviour, &["PRESSURE-OVERCLOSURE"], &["AUGMENTEDLAGRANGE", "PENALTY"]),
     keyword("SURFACE INTERACTION", Rest, Reader::interaction, &["NAME"], &["UNSYMM"]),
     keyword("TIE", Rest, Reader::tie, &["NAME", "POSITIONTOLERANCE", "CYCLICSYMMETRY", "MULTISTAGE", "FLUIDPERIODIC", "FLUIDCYCLIC"], &["ADJUST", "NOROTATION", "TYPE"]),
     keyword("TRANSFORM", Surfaces, Reader::transform, &["NSET", "TYPE"], &[]),
 ];
+
+/// Options that are not read, and what that means: keyword, option in capitals without blanks, as the manual writes it, why.
+const UNREAD_OPTIONS: &[(&str, &str, &str, &str)] = &[
+    ("COMPLEX FREQUENCY", "CORIOLIS", "CORIOLIS", "gyroscopic terms are those of the rotations of the case"),
+    ("FRICTION", "ELASTICSLIP", "ELASTIC SLIP", STICK),
+    ("FRICTION", "SLIPTOLERANCE", "SLIP TOLERANCE", STICK),
+    ("FRICTION", "TAUMAX", "TAUMAX", "friction grows with the pressure without limit"),
+    (
+        "STEP",
+        "NLGEOM",
+        "NLGEOM",
+        "the geometric stiffness of the preload is a key of the case: prestress = true",
+    ),
+];
+
+const STICK: &str = "the stiffness of sticking contact is a key of the case: bristle = { stiffness = … }";
+
+/// How an option that is not read is called, and why it is not.
+pub(super) fn unread_option(words: &str, option: &str) -> (String, &'static str) {
+    let row = UNREAD_OPTIONS.iter().find(|(keyword, name, ..)| *keyword == words && *name == option);
+    let (name, why) = row.map_or((option, "an option that is not read"), |(_, _, name, why)| (*name, *why));
+    (format!("*{words}, {name}"), why)
+}
 
 /// Keywords that are not read because they are about output, steps or heat, which are nothing of the vibrations.
 const WITHOUT_EFFECT: &[&str] = &[
@@ -253,4 +276,10 @@ pub(super) fn unread(keyword: &str) -> (String, Weight, &'static str) {
 #[cfg(test)]
 pub(super) fn words() -> impl Iterator<Item = &'static str> {
     KEYWORDS.iter().map(|row| row.words)
+}
+
+/// The options that are not read and matter, each with its keyword: `*STEP, NLGEOM`.
+#[cfg(test)]
+pub(super) fn unread_options() -> impl Iterator<Item = String> {
+    UNREAD_OPTIONS.iter().map(|(words, _, name, _)| format!("*{words}, {name}"))
 }

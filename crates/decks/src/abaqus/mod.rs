@@ -78,6 +78,7 @@ pub(crate) fn read(path: &Path, files: &mut Files) -> Result<Deck> {
     for place in &blocks.before {
         reader.deck.ledger.note(Weight::Nothing, "text", "lines before the first keyword", *place);
     }
+    reader.deck.lost.clone_from(&blocks.lost);
     let own = reader.instances_of(&blocks);
     for phase in Phase::ALL {
         for (space, block) in &own {
@@ -112,9 +113,10 @@ impl Reader {
     fn note_options(&mut self, keyword: &Keyword, found: Found<'_>) {
         for option in &found.block.options {
             let name = option.name.as_str();
-            if !keyword.options.contains(&name) && !keyword.without_effect.contains(&name) {
-                let what = format!("*{}, {name}", keyword.words);
-                self.deck.ledger.note(Weight::Perhaps, what, "an option that is not read", found.place());
+            let off = option.value.eq_ignore_ascii_case("NO");
+            if !off && !keyword.options.contains(&name) && !keyword.without_effect.contains(&name) {
+                let (what, why) = keywords::unread_option(keyword.words, name);
+                self.deck.ledger.note(Weight::Perhaps, what, why, found.place());
             }
         }
     }

@@ -4,6 +4,7 @@ use super::blocks;
 use super::reader::{Found, Reader};
 use super::waiting::Step;
 use crate::deck::Analysis;
+use crate::ledger::Weight;
 
 impl Reader {
     /// *HEADING: the first line is the title.
@@ -32,6 +33,10 @@ impl Reader {
 
     /// *COMPLEX FREQUENCY: the same.
     pub fn complex_frequency(&mut self, _: usize, found: Found<'_>) {
+        if !found.option("FRICTIONDAMPING").is_some_and(|damping| damping.eq_ignore_ascii_case("YES")) {
+            let why = "damping by friction, which is left out there without FRICTION DAMPING=YES, is in the complex modes of the case";
+            self.deck.ledger.note(Weight::Perhaps, "*COMPLEX FREQUENCY", why, found.place());
+        }
         let (count, band) = self.wanted(found);
         self.step.get_or_insert_default().analysis = Some(Analysis::ComplexModes { count, band });
     }

@@ -14,6 +14,8 @@ pub(super) struct Interaction {
 /// A pair whose law may stand below it.
 #[derive(Debug)]
 pub(super) struct PendingContact {
+    /// The name that a comment gives it.
+    pub title: String,
     pub slave: String,
     pub master: String,
     pub interaction: String,

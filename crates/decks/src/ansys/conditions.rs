@@ -87,7 +87,8 @@ pub(super) fn supports(reader: &mut Reader<'_>, deck: &mut Deck, index: &impl Fn
         deck.node_sets.iter().map(|set| (set.members.as_slice(), set.name.as_str())).collect();
     for ((held, _), (nodes, frame, place)) in groups {
         let name = by_members.get(nodes.as_slice()).map(|name| name.to_string());
-        deck.supports.push(Support { name, nodes, held, frame, place });
+        let title = String::new();
+        deck.supports.push(Support { title, name, nodes, held, frame, place });
     }
     let mut forces: BTreeMap<[u64; 3], ([f64; 3], Vec<usize>, Place)> = BTreeMap::new();
     for (node, (force, place)) in &model.forces {

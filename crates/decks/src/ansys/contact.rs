@@ -188,6 +188,7 @@ fn joined_or_touching(
     }
     let friction = if behaviour == 1 { 1.0 } else { friction.unwrap_or(0.0) };
     let closed = options.option(9) == 1 || matches!(options.option(5), 1 | 3);
+    let name = String::new();
     deck.contacts.push(Contact { name, slave, master, friction, stiffness, stick, closed, place });
 }
 

@@ -17,6 +17,7 @@ impl Converter<'_> {
             let alike = |other: &&mut Support| {
                 support.name.is_none()
                     && other.name.is_none()
+                    && other.title == support.title
                     && other.held == support.held
                     && other.frame == support.frame
             };
@@ -31,7 +32,7 @@ impl Converter<'_> {
     }
 
     fn support(&mut self, k: usize, support: Support) {
-        let Support { name, mut nodes, held, frame, place } = support;
+        let Support { title, name, mut nodes, held, frame, place } = support;
         nodes.sort_unstable();
         nodes.dedup();
         let used = self.nodes_in_use(&nodes);
@@ -82,7 +83,8 @@ impl Converter<'_> {
         let wanted = name.or_else(|| self.regions.name_of_nodes(&used).map(str::to_string));
         let wanted = wanted.unwrap_or_else(|| format!("support_{}", k + 1));
         let Some(region) = self.regions.points(&wanted, &used) else { return };
-        let table = self.case.table("support", &self.names.free("support", &region));
+        let own = if title.is_empty() { &region } else { &title };
+        let table = self.case.table("support", &self.names.free("support", own));
         table.key("on", quoted(&region));
         if list.len() < 6 {
             table.key("held", strings(list));

@@ -67,7 +67,11 @@ impl Converter<'_> {
         [body, counter]: [&str; 2],
     ) {
         let units = self.units;
-        let name = if contact.slave.is_empty() { format!("contact_{}", k + 1) } else { body.to_string() };
+        let name = match (contact.name.as_str(), contact.slave.as_str()) {
+            ("", "") => format!("contact_{}", k + 1),
+            ("", _) => body.to_string(),
+            (own, _) => own.to_string(),
+        };
         let per_area = units.stress() / units.length;
         let (stiffness, chosen) = match contact.stiffness {
             Some(stiffness) => (stiffness * per_area, false),
@@ -86,6 +90,9 @@ impl Converter<'_> {
             table.comment(format!(
                 "The file has hard contact: a stiffness of {HARD} E/h of the softer side stands for it."
             ));
+        }
+        for (_, why) in self.deck.lost.iter().filter(|(what, _)| is_of(what, contact)) {
+            table.comment(format!("Lost before it came here: {why}."));
         }
         if rotation.is_none() {
             table.comment("Nothing in the file turns: the bodies do not slide. Give a `rotation` or a `sliding_velocity` for squeal.");
@@ -182,6 +189,11 @@ impl Converter<'_> {
         let size = (0..3).map(|i| (high[i] - low[i]).powi(2)).sum::<f64>().sqrt();
         (size > 0.0).then(|| modulus / size)
     }
+}
+
+/// Whether what a file says that is lost is of this contact.
+pub(super) fn is_of(what: &str, contact: &Contact) -> bool {
+    !contact.name.is_empty() && what.strip_prefix("contact.") == Some(&contact.name)
 }
 
 /// Two digits.

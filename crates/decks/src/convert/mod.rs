@@ -1,5 +1,6 @@
 //! A mesh, a commented case and a page of what was read, of a model of another program.
 
+mod analyses;
 mod constraints;
 mod contacts;
 mod converter;
@@ -9,14 +10,14 @@ mod regions;
 mod text;
 mod units;
 
-use crate::deck::{Analysis, Deck, Place};
+use crate::deck::{Deck, Place};
 use crate::ledger::{Ledger, Weight};
 use converter::{Converter, TableNames};
 use regions::Regions;
 use std::collections::HashMap;
 use stridor_base::error::{Fault, Faults, Result};
 use stridor_mesh::Mesh;
-use text::{CaseText, number, quantity, quoted};
+use text::{CaseText, quoted};
 pub use units::Units;
 
 /// What is made of a deck.
@@ -85,11 +86,12 @@ pub fn convert(deck: &Deck, units: Units) -> Result<Converted> {
     converter.contacts();
     converter.equations();
     converter.analyses();
+    let lost = converter.lost();
     let (page, mass) = converter.page();
     let Converter { regions, case, warnings, ledger, .. } = converter;
     let title = if deck.title.is_empty() { "An imported model".to_string() } else { deck.title.clone() };
     let head = format!(
-        "title = {}\n\n# Imported with the units {}. What was read, and what was not: import.md\n\n[mesh]\nfile = {}\nunit = \"m\"\n",
+        "title = {}\n\n# Imported with the units {}. What was read, and what was not: import.md\n{lost}\n[mesh]\nfile = {}\nunit = \"m\"\n",
         quoted(&title),
         units.words,
         quoted(Converted::MESH_FILE)
@@ -125,49 +127,21 @@ impl Converter<'_> {
         }
     }
 
-    /// The analyses that were meant; modes where there is none.
-    fn analyses(&mut self) {
-        let per_time = 1.0 / self.units.time;
-        let mut asked = [false; 2];
-        for analysis in &self.deck.analyses {
-            match analysis {
-                Analysis::Modes { count, band } if !asked[0] => {
-                    asked[0] = true;
-                    self.case.table("modes", "imported");
-                    match (count, band[1]) {
-                        (Some(count), _) => self.case.key("count", count.to_string()),
-                        (None, Some(top)) => self.case.key("below", quantity(top * per_time, 1.0, "Hz")),
-                        (None, None) => self.case.key("count", "10"),
-                    };
-                }
-                Analysis::ComplexModes { band, .. } if !asked[1] => {
-                    asked[1] = true;
-                    self.complex(*band);
-                }
-                _ => {}
+    /// Comments on what the file says that it does not have of its model, but what stands with a contact.
+    fn lost(&mut self) -> String {
+        let mut text = String::new();
+        for (what, why) in &self.deck.lost {
+            self.ledger.note(
+                Weight::Matters,
+                what,
+                format!("the file says that it was lost: {why}"),
+                Place::default(),
+            );
+            if !self.deck.contacts.iter().any(|contact| contacts::is_of(what, contact)) {
+                text += &format!("# Lost before it came here: {what}: {why}.\n");
             }
         }
-        if !asked[1] && !self.deck.contacts.is_empty() {
-            self.complex([None; 2]);
-        } else if asked == [false; 2] {
-            self.case.table("modes", "imported").key("count", "10");
-        }
-    }
-
-    fn complex(&mut self, band: [Option<f64>; 2]) {
-        if self.deck.contacts.is_empty() && self.deck.motions.is_empty() {
-            let why = "complex modes need a contact or a rotation";
-            self.ledger.note(Weight::Matters, "complex modes", why, Place::default());
-            return;
-        }
-        let per_time = 1.0 / self.units.time;
-        let low = band[0].map_or(0.0, |f| f * per_time);
-        let top = band[1].map_or(10_000.0, |f| f * per_time);
-        self.case.only("cea");
-        if band[1].is_none() {
-            self.case.comment("The file names no highest frequency.");
-        }
-        self.case.key("band", format!("[{}, {}]", number(low), number(top)));
+        text
     }
 
     fn equations(&mut self) {
@@ -177,3 +151,6 @@ impl Converter<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -220,7 +220,14 @@ fn support(name: Option<String>, mut held: Vec<(usize, [bool; 6], Place)>, model
             Frame::Turned(unit) => bits(unit),
             Frame::Cylindrical(axis) => bits(axis),
         };
-        let new = || Support { name: name.clone(), nodes: Vec::new(), held: *held, frame, place: *place };
+        let new = || Support {
+            title: String::new(),
+            name: name.clone(),
+            nodes: Vec::new(),
+            held: *held,
+            frame,
+            place: *place,
+        };
         groups.entry((*held, key)).or_insert_with(new).nodes.push(*node);
     }
     model.deck.supports.extend(groups.into_values());

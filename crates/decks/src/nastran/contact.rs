@@ -229,7 +229,7 @@ impl Contacts {
             };
             let (stiffness, stick, closed) = (None, None, false);
             model.deck.contacts.push(Contact {
-                name,
+                name: String::new(),
                 slave,
                 master,
                 friction,

@@ -57,6 +57,7 @@ pub(crate) fn read(path: &Path, files: &mut Files) -> Result<Deck> {
     names.count();
     let mut deck = bulk.resolve(&control, &names, &mut notes);
     deck.title = control.title;
+    deck.lost = names.lost;
     deck.ledger = notes.ledger;
     Ok(deck)
 }

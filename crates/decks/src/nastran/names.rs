@@ -1,5 +1,6 @@
 //! Names that pre-processors write into comments: HyperMesh, ANSA, Femap, I-DEAS, Simcenter and Patran.
 
+use crate::written::lost;
 use std::collections::BTreeMap;
 
 /// What has a name.
@@ -8,6 +9,7 @@ pub(super) enum Named {
     Property,
     Material,
     Set,
+    Region,
 }
 
 /// Names by number.
@@ -18,11 +20,14 @@ pub(super) struct Names {
     next: BTreeMap<Named, String>,
     /// How many have a name, in capitals.
     counts: BTreeMap<(Named, String), usize>,
+    /// What comments say that was not written, and why.
+    pub lost: Vec<(String, String)>,
 }
 
 impl Names {
     /// A comment, without its `$`.
     pub fn comment(&mut self, comment: &str) {
+        self.lost.extend(lost(comment));
         if let Some((what, number, name)) = by_number(comment) {
             self.by_number.insert((what, number), name);
         } else if let Some((what, name)) = next(comment) {
@@ -84,13 +89,14 @@ fn ansa(comment: &str) -> Option<(Named, u64, String)> {
     Some((what, number.trim().parse().ok()?, named(name)?))
 }
 
-/// `$ Femap Property 3 : disc`, `$ Femap with NX Nastran Material 1 : steel`.
+/// `$ Femap Property 3 : disc`, `$ Femap with NX Nastran Material 1 : steel`, `$ Femap Region 2 : pad`.
 fn femap(comment: &str) -> Option<(Named, u64, String)> {
     let (head, name) = comment.trim().strip_prefix("Femap")?.split_once(':')?;
     let words: Vec<&str> = head.split_whitespace().collect();
     let (what, number) = match words[..] {
         [.., "Property", number] => (Named::Property, number),
         [.., "Material", number] => (Named::Material, number),
+        [.., "Region", number] => (Named::Region, number),
         _ => return None,
     };
     Some((what, number.parse().ok()?, named(name)?))

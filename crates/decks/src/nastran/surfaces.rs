@@ -134,9 +134,13 @@ impl Surfaces {
                 of_property.entry(*number).or_default().push(at);
             }
         }
-        for (numbers, names) in [(&self.regions, &mut found.regions), (&self.own, &mut found.own)] {
+        let regions = (&self.regions, &mut found.regions, true);
+        for (numbers, names, named) in [regions, (&self.own, &mut found.own, false)] {
             for (number, (card, parts)) in numbers {
-                let name = format!("{card}_{number}");
+                let name = match named {
+                    true => model.names.of(Named::Region, *number, card),
+                    false => format!("{card}_{number}"),
+                };
                 let surface = surface(name.clone(), parts, card, &of_property, model);
                 model.deck.surfaces.push(surface);
                 names.insert(*number, name);

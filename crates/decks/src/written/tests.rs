@@ -181,6 +181,7 @@ fn bricks() -> Deck {
     deck.node_sets.push(Set { name: "FLOOR".into(), members: floor.clone(), internal: false });
     let held = [true, false, true, false, false, false];
     deck.supports.push(crate::deck::Support {
+        title: "wall".into(),
         name: Some("FLOOR".into()),
         nodes: floor,
         held,
@@ -285,6 +286,50 @@ fn what_joins_and_loads_elements_reads_back() {
     }
 }
 
+/// Names that a format has a comment for: of supports and contacts in Abaqus, of surfaces in NASTRAN.
+#[test]
+fn names_in_comments_read_back() {
+    for format in [Format::Abaqus, Format::Nastran] {
+        let mut deck = bricks();
+        deck.contacts.push(Contact {
+            name: "rub: inner".into(),
+            slave: "ABOVE".into(),
+            master: "BELOW".into(),
+            friction: 0.4,
+            stiffness: None,
+            stick: None,
+            closed: false,
+            place: Place::default(),
+        });
+        let (read, text) = again(&deck, format);
+        let (contact, support) = (&read.contacts[0], &read.supports[0]);
+        assert_eq!((contact.slave.as_str(), contact.master.as_str()), ("ABOVE", "BELOW"), "{text}");
+        let names = if format == Format::Abaqus { ["rub: inner", "wall"] } else { [""; 2] };
+        assert_eq!([contact.name.as_str(), support.title.as_str()], names, "{text}");
+        let floor = read.node_set("FLOOR").map(|set| set.members.as_slice());
+        assert_eq!(floor, deck.node_set("FLOOR").map(|set| set.members.as_slice()), "{text}");
+    }
+}
+
+/// What a deck lost before, and what a format does not hold: comments of the file, which are read back.
+#[test]
+fn what_is_lost_stands_in_the_file() {
+    for format in [Format::Abaqus, Format::Nastran] {
+        let mut deck = bricks();
+        let place = Place::default();
+        deck.ledger.note(Weight::Matters, "contact.rub", "a load of 50 N is not written: press", place);
+        deck.ledger.note(Weight::Perhaps, "shell.disc", "is another one", place);
+        let (point, axis) = ([0.0; 3], [0.0, 0.0, 1.0]);
+        deck.motions.push(Motion { set: "LOWER".into(), point, axis, speed: 1.0, place });
+        let (read, text) = again(&deck, format);
+        let what: Vec<&str> = read.lost.iter().map(|(what, _)| what.as_str()).collect();
+        let wanted =
+            if format == Format::Abaqus { &["contact.rub"][..] } else { &["contact.rub", "rotations"] };
+        assert_eq!(what, wanted, "{text}");
+        assert_eq!(read.lost[0].1, "a load of 50 N is not written: press");
+    }
+}
+
 /// A rotation is of the nodes of its set.
 #[test]
 fn a_rotation_reads_back() {
@@ -323,6 +368,7 @@ fn directions_about_an_axis_are_held_by_equations() {
     assert_eq!(read.equations.len(), 1, "that at (1, 1)");
     // With uy held by another support nothing is left of it but ux.
     let other = Support {
+        title: String::new(),
         held: [false, true, false, false, false, false],
         frame: Frame::Global,
         ..deck.supports[0].clone()

@@ -146,7 +146,7 @@ fn an_unknown_kind_of_file_names_those_that_are_read() {
     }
 }
 
-/// \*MATRIX INPUT: names, factor, and the type, by which half of a matrix is told from a whole one.
+/// \*MATRIX INPUT: names, factor, and the type, which says whether a matrix with one triangle is half of a symmetric one.
 #[test]
 fn keywords_of_abaqus_are_read() {
     let text = "*Matrix Input, name=M\n1,1, 1,1, 1.\n*MATRIX INPUT, NAME=K, TYPE=UNSYMMETRIC, SCALE FACTOR=2.\n\

@@ -15,10 +15,10 @@ fn contact(law: &str) -> (Contact, Vec<Weight>) {
 fn pairs_have_the_friction_and_stiffness_of_their_interaction() {
     let (hard, listed) =
         contact("*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=HARD\n*FRICTION, SLIP TOLERANCE=0.005\n0.4,\n");
-    assert_eq!((hard.slave.as_str(), hard.master.as_str(), hard.name.as_str()), ("Pad", "Disc", "I"));
+    assert_eq!((hard.slave.as_str(), hard.master.as_str(), hard.name.as_str()), ("Pad", "Disc", ""));
     assert_eq!(
         (hard.friction, hard.stiffness, hard.stick, hard.closed, listed),
-        (0.4, None, None, false, vec![])
+        (0.4, None, None, false, vec![Weight::Perhaps])
     );
     // CalculiX: slope and the tension at infinity; μ and the slope before it slips.
     let (linear, listed) =
@@ -92,4 +92,18 @@ fn contact_that_is_wrong_or_not_read_is_named() {
     ));
     assert!(itself.contacts.is_empty());
     assert_eq!(notes(&itself).iter().map(|(weight, ..)| *weight).collect::<Vec<_>>(), [Weight::Matters; 3]);
+}
+
+/// Options that change the model and are not read: each is listed with its reason, unless it is switched off.
+#[test]
+fn options_that_are_not_read_are_listed() {
+    for words in super::super::keywords::unread_options() {
+        let data = if words.starts_with("*FRICTION") { "0.4,\n" } else { "" };
+        for (value, listed) in [("", true), ("=0.005", true), ("=YES", true), ("=NO", false)] {
+            let deck = bricks(&format!("*SURFACE INTERACTION, NAME=I\n1.,\n{words}{value}\n{data}"));
+            let row = deck.ledger.rows().find(|row| row.what == words);
+            assert_eq!(row.is_some(), listed, "{words}{value}");
+            assert!(row.is_none_or(|row| row.why != "an option that is not read"), "{words}");
+        }
+    }
 }

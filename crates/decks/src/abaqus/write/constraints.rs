@@ -3,7 +3,7 @@
 use super::{Writer, number, row};
 use crate::deck::CouplingKind;
 use crate::ledger::Weight;
-use crate::written::{Held, HeldNode, held, rotates};
+use crate::written::{Held, HeldNode, held, one_line, rotates};
 
 impl Writer<'_> {
     /// *BOUNDARY; *EQUATION where directions are held that are not those of the coordinates.
@@ -12,6 +12,9 @@ impl Writer<'_> {
         let Held { supports, more, sums } = held(deck);
         for (support, held) in deck.supports.iter().zip(&supports) {
             let alike = held.iter().all(|other| other.held == held[0].held);
+            if !support.title.is_empty() {
+                self.line(format!("** Name: {} Type: Displacement/Rotation", one_line(&support.title)));
+            }
             self.line("*BOUNDARY");
             if let (true, Some(first)) = (alike, held.first()) {
                 for words in self.words_for_nodes(support.name.as_deref(), &support.nodes) {
@@ -140,6 +143,9 @@ impl Writer<'_> {
                 }
             }
             let closed = if contact.closed { ", ADJUST=0.0" } else { "" };
+            if !contact.name.is_empty() {
+                self.line(format!("** Interaction: {}", one_line(&contact.name)));
+            }
             self.line(format!("*CONTACT PAIR, INTERACTION={name}, TYPE=SURFACE TO SURFACE{closed}"));
             let (slave, master) = (self.surfaces.of(&contact.slave), self.surfaces.of(&contact.master));
             self.line(format!("{slave}, {master}"));

@@ -38,7 +38,7 @@ pub(crate) fn write(deck: &Deck) -> Written {
     let element_numbers = numbers(deck.elements.iter().map(|element| element.number));
     let mut writer = Writer {
         deck,
-        out: Written { left_out: deck.ledger.clone(), ..Written::default() },
+        out: Written::of(deck),
         node_sets: Names::default(),
         element_sets: Names::default(),
         surfaces: Names::default(),
@@ -51,6 +51,7 @@ pub(crate) fn write(deck: &Deck) -> Written {
     };
     writer.out.line("*HEADING");
     writer.out.line(format!(" {}", deck.title.replace(['\n', '\r'], " ")));
+    let head = writer.out.text.len();
     writer.nodes();
     writer.elements();
     writer.sets();
@@ -65,6 +66,7 @@ pub(crate) fn write(deck: &Deck) -> Written {
     writer.equations();
     writer.contacts();
     writer.steps();
+    writer.out.insert_lost(head, "** ");
     writer.out
 }
 

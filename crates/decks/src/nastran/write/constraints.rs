@@ -105,7 +105,21 @@ impl Writer<'_> {
             fields.extend([slave, master, Real(contact.friction)]);
             fields.resize(fields.len().next_multiple_of(8), Blank);
             if contact.stiffness.is_some() || contact.stick.is_some() {
-                self.note(Weight::Perhaps, "contacts", "stiffnesses of contacts are not written");
+                let what = if contact.name.is_empty() {
+                    "contacts".into()
+                } else {
+                    format!("contact.{}", contact.name)
+                };
+                let words = |k: Option<f64>, name: &str| k.map(|k| format!("{name} of {k:e} for an area"));
+                let both = [
+                    words(contact.stiffness, "a stiffness"),
+                    words(contact.stick, "a stiffness of sticking"),
+                ];
+                let both: Vec<String> = both.into_iter().flatten().collect();
+                self.out.lose(
+                    &what,
+                    &format!("{} is not written: give it in the other program", both.join(" and ")),
+                );
             }
         }
         if !fields.is_empty() {

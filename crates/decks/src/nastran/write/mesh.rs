@@ -2,9 +2,9 @@
 
 use super::Writer;
 use super::card::Field;
-use crate::deck::{SectionShape, ShellFace};
+use crate::deck::{SectionShape, Set, ShellFace};
 use crate::ledger::Weight;
-use crate::written::sections_of_elements;
+use crate::written::{one_line, sections_of_elements};
 use stridor_mesh::quality::{cross, minus, norm};
 use stridor_mesh::{CellKind, Program};
 
@@ -56,6 +56,9 @@ impl Writer<'_> {
         for (k, surface) in deck.surfaces.iter().enumerate() {
             let number = k as u64 + 1;
             self.surfaces.insert(surface.name.to_uppercase(), number);
+            if !(surface.shells.is_empty() && surface.faces.is_empty()) {
+                self.bulk.line(format!("$ Femap Region {number} : {}", one_line(&surface.name)));
+            }
             if !surface.nodes.is_empty() {
                 let why = "surfaces of nodes are not written";
                 self.note(Weight::Matters, &format!("surface {}", surface.name), why);
@@ -83,19 +86,27 @@ impl Writer<'_> {
         }
     }
 
-    /// What has no cards here.
+    /// SET3 of nodes, and of elements that are no section; what has no cards here.
     pub(super) fn sets(&mut self) {
         let deck = self.deck;
-        if deck.node_sets.iter().any(|set| !set.internal) {
-            self.note(Weight::Nothing, "sets of nodes", "names of sets of nodes are not written");
-        }
         let section =
-            |name: &str| deck.sections.iter().any(|section| section.name.eq_ignore_ascii_case(name));
-        if deck.element_sets.iter().any(|set| !set.internal && !section(&set.name)) {
-            self.note(Weight::Nothing, "sets of elements", "sets that are no section are not written");
+            |set: &&Set| deck.sections.iter().any(|section| section.name.eq_ignore_ascii_case(&set.name));
+        let nodes = deck.node_sets.iter().map(|set| (set, "GRID", 1));
+        let elements = deck.element_sets.iter().filter(|set| !section(set)).map(|set| (set, "ELEM", 2));
+        let all = nodes.chain(elements).filter(|(set, ..)| !set.internal && !set.members.is_empty());
+        for (k, (set, word, kind)) in all.enumerate() {
+            let number = k as u64 + 1;
+            let numbers = if kind == 1 { &self.node_numbers } else { &self.element_numbers };
+            let members: Vec<Field> = set.members.iter().map(|at| Field::Integer(numbers[*at])).collect();
+            let name = one_line(&set.name).replace('"', " ");
+            self.bulk.line(format!("$HMSET {number:>8} {kind} \"{name}\""));
+            self.card("SET3", &[&[Field::Integer(number), Field::Word(word.into())][..], &members].concat());
+        }
+        if deck.supports.iter().any(|support| !support.title.is_empty()) {
+            self.note(Weight::Nothing, "supports", "names of supports are not written");
         }
         if !deck.motions.is_empty() {
-            self.note(Weight::Matters, "rotations", "rotations are not written: RFORCE and RGYRO have them");
+            self.out.lose("rotations", "rotations are not written: RFORCE and RGYRO have them");
         }
     }
 }

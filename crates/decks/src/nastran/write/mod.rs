@@ -40,7 +40,7 @@ pub(crate) fn write(deck: &Deck) -> Written {
     let element_numbers = crate::written::numbers(deck.elements.iter().map(|element| element.number));
     let mut writer = Writer {
         deck,
-        out: Written { left_out: deck.ledger.clone(), ..Written::default() },
+        out: Written::of(deck),
         bulk: Written::default(),
         next_element: element_numbers.iter().max().map_or(1, |most| most + 1),
         next_property: deck.sections.len() as u64 + 1,
@@ -66,6 +66,7 @@ pub(crate) fn write(deck: &Deck) -> Written {
     let Writer { mut out, bulk, .. } = writer;
     control(deck, &bulk.text, &mut out);
     out.line("BEGIN BULK");
+    out.insert_lost(out.text.len(), "$ ");
     out.text += &bulk.text;
     out.line("ENDDATA");
     out

@@ -1,7 +1,8 @@
 //! Binary OUTPUT4: records of Fortran, each between its length in bytes twice. Words have four bytes, or eight where the first record has 48
 //! bytes instead of 24 (MODE=ILP64), in either byte order; a number of double precision has eight bytes.
 
-use super::{Block, Deviation, File, Matrix, deviation};
+use super::super::found::File;
+use super::matrix::{Block, Deviation, Matrix, deviation};
 
 /// Bytes of a word, and their order.
 #[derive(Debug, Clone, Copy)]

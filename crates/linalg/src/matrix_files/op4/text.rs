@@ -1,7 +1,8 @@
 //! OUTPUT4 as text: whole numbers of eight characters, or sixteen where the first line ends in `|I16`, and values of the width that the first
 //! line states, `1P,3E23.16`. Here the words of a dense column are its numbers.
 
-use super::{Block, Deviation, File, Matrix, deviation};
+use super::super::found::File;
+use super::matrix::{Block, Deviation, Matrix, deviation};
 use crate::matrix_market::{Lines, shown};
 use stridor_base::numbers;
 
@@ -115,7 +116,7 @@ fn matrix(file: &File, lines: &mut Lines<'_>) -> std::result::Result<Option<Matr
             return deviation(format!("{words} words in column {column}"), "one or more");
         }
         while words > 0 {
-            let what = if matrix.big {
+            let what = if matrix.header() == 2 {
                 "length and first row of a string"
             } else {
                 "length and first row of a string in one number"
