@@ -13,12 +13,12 @@ use crate::error::Result;
 use crate::modal::{self, ModesWanted, RealModes};
 use crate::progress::Observer;
 use crate::results::ComplexResult;
-use crate::stability::{self, Band, Certificate, ComplexModes, Nearest, Structural};
+use crate::stability::{self, Band, Certificate, ClosedContact, ComplexModes, Nearest, Structural};
 use crate::stability::{band_around, band_expected, keep_nearest};
 use crate::system::{Structure, System};
 use std::borrow::Cow;
 use std::f64::consts::TAU;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Floating-point operations of a certificate that is not requested explicitly, one that takes at most half as many as the
 /// eigenvalues aside: two seconds of one core.
@@ -31,10 +31,24 @@ const SMALL: usize = 60;
 const SPANNED: f64 = 1.5;
 const SPANNED_AT_LEAST: f64 = 1.4;
 
+/// The springs of more contact points are part of the stiffness before real modes are sought: the modes of bodies that contact
+/// holds together have little in common with those of the bodies apart.
+const MANY_POINTS: usize = 80;
+
+/// Whether the real modes that span the complex ones of a case are those with its contact closed. Modal damping is that of the structure
+/// alone, and so are its modes.
+pub fn is_spanned_closed(prepared: &Prepared) -> bool {
+    let damping = &prepared.case.damping;
+    prepared.system.points().nth(MANY_POINTS).is_some()
+        && damping.modal_ratio == 0.0
+        && damping.modal_ratios.is_empty()
+}
+
 /// Modes of an analysis, with the band and the real modes that span it.
 pub struct BandModes {
     band: [f64; 2],
     basis: RealModes,
+    closed: Option<ClosedContact>,
     /// The modes.
     pub modes: ComplexModes,
     certificate: Option<Certificate>,
@@ -50,20 +64,26 @@ pub fn band_modes<'a>(
     clock: &mut Clock,
     observer: &dyn Observer,
 ) -> Result<(BandModes, Cow<'a, System>)> {
-    let structure = &prepared.system.structure;
-    let preloaded = match equilibrium::tangent_stiffness(&prepared.system, &state.displacement)? {
+    let closed = match is_spanned_closed(prepared) {
+        true => Some(ClosedContact::of(&prepared.system, state)?),
+        false => None,
+    };
+    let (own, state) = closed.as_ref().map_or((&prepared.system, state), |c| (&c.system, &c.steady));
+    let basis = basis.filter(|_| closed.is_none());
+    let structure = &own.structure;
+    let preloaded = match equilibrium::tangent_stiffness(own, &state.displacement)? {
         Cow::Borrowed(_) => Cow::Borrowed(structure),
         Cow::Owned(stiffness) => Cow::Owned(Structure { stiffness: stiffness.into(), ..structure.clone() }),
     };
     if basis.is_none() {
         check_damping_frequencies(&preloaded, prepared.case, cea.basis_below)?;
     }
-    let mut system = Cow::Borrowed(&prepared.system);
+    let mut system = Cow::Borrowed(own);
     let left_vectors = left_vectors || cea.left_vectors;
     let mut problem =
         ComplexProblem { prepared, cea, left_vectors, system: &mut system, state, clock, observer };
     let nearest = cea.nearest.zip(cea.count).map(|(hz, count)| Nearest { hz, count, within: cea.band });
-    let found = match nearest {
+    let mut found = match nearest {
         Some(asked) => problem.nearest(&asked, &preloaded)?,
         None => {
             let basis = match basis {
@@ -74,9 +94,14 @@ pub fn band_modes<'a>(
                 }
             };
             let (modes, certificate) = problem.modes((&basis).into(), cea.band)?;
-            BandModes { band: cea.band, basis, modes, certificate }
+            BandModes { band: cea.band, basis, closed: None, modes, certificate }
         }
     };
+    let system = match system {
+        Cow::Owned(damped) => Cow::Owned(damped),
+        Cow::Borrowed(_) => Cow::Borrowed(&prepared.system),
+    };
+    found.closed = closed;
     Ok((found, system))
 }
 
@@ -91,7 +116,7 @@ pub fn complex_result<'a>(
     observer: &dyn Observer,
 ) -> Result<(ComplexResult, OperatingPoint<'a>)> {
     let (found, system) = band_modes((prepared, &steady), cea, basis, left_vectors, clock, observer)?;
-    let BandModes { band, basis: real, modes, certificate } = found;
+    let BandModes { band, basis: real, closed, modes, certificate } = found;
     let asked = Band { hz: band, nearest: cea.nearest.zip(cea.count), left_vectors: false };
     let confirmation = match cea.confirm {
         true => Some(
@@ -124,7 +149,7 @@ pub fn complex_result<'a>(
         confirmation,
         modes,
     };
-    Ok((complex, OperatingPoint { prepared, steady, system, real }))
+    Ok((complex, OperatingPoint { prepared, steady, system, real, closed, open: OnceLock::new() }))
 }
 
 /// Input of a complex eigenvalue analysis.
@@ -196,7 +221,7 @@ impl ComplexProblem<'_, '_> {
                 self.modes(Structural { real: &basis, shifted: shifted.as_ref() }, band)?;
             match keep_nearest(&mut modes, asked, band) {
                 Some(wider) => (expected, least, start) = (wider, wider, shifted),
-                None => return Ok(BandModes { band, basis, modes, certificate }),
+                None => return Ok(BandModes { band, basis, closed: None, modes, certificate }),
             }
         }
     }
@@ -222,14 +247,16 @@ pub fn whole_modes(
 mod oscillators;
 #[cfg(test)]
 mod tests {
+    use super::*;
     use crate::bounds::{Origin::*, within};
     use crate::case::Case;
+    use crate::equilibrium::solve_steady;
     use crate::job::states::Whole;
-    use crate::job::{Prepared, Selection, analyse};
+    use crate::job::{Selection, analyse};
     use crate::linalg::c64;
     use crate::linalg::random::Random;
-    use crate::results::ComplexResult;
     use crate::sweep::SweepProblem;
+    use std::path::Path;
 
     /// Writes a symmetric matrix.
     pub(super) fn write_matrix(path: &std::path::Path, a: &faer::Mat<f64>) {
@@ -263,6 +290,34 @@ mod tests {
                 &format!("modal_ratio = {}", between(1e-3, 0.05, random.next())),
             );
         Case::parse("rig", &text[..text.find("[sensitivity]").unwrap()], ".".into()).unwrap()
+    }
+
+    /// A brake with 128 contact points: the real modes that span are those with the contact closed, which lie above those of the structure
+    /// alone, one by one; the complex modes are those that the open ones give.
+    #[test]
+    fn many_points_are_spanned_by_modes_with_the_contact_closed() {
+        let text = include_str!("../../validation/solid-brake/case.toml").replace("modal_ratio = 0.002", "");
+        let model = &text[..text.find("[modes.disc]").unwrap()];
+        let text = format!("{model}[cea]\nband = [500, 6000]\ncertify = false\n");
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("validation/solid-brake");
+        let case = Case::parse("solid-brake", &text, folder).unwrap();
+        let prepared = Prepared::new(&case).unwrap();
+        assert!(is_spanned_closed(&prepared));
+        let steady = solve_steady(&prepared.system, &prepared.steady_options(), &()).unwrap();
+        let (cea, steady) = (case.cea.as_ref().unwrap(), Arc::new(steady));
+        let at = (&prepared, steady.clone());
+        let (found, point) = complex_result(at, cea, None, true, &mut Clock::default(), &()).unwrap();
+        let open = point.open_modes(&()).unwrap();
+        let both: Vec<_> = point.real.eigenvalues.iter().zip(&open.eigenvalues).collect();
+        assert!(both.len() > 20 && point.real.len() < open.len());
+        assert!(both.iter().all(|(closed, open)| **closed > **open * (1.0 - 1e-9)));
+        assert!(both.iter().any(|(closed, open)| **closed > 1.1 * **open));
+        let alone = stability::complex_modes(&prepared.system, &steady, open, cea.band, &()).unwrap();
+        assert_eq!(found.modes.modes.len(), alone.modes.len());
+        for (a, b) in found.modes.modes.iter().zip(&alone.modes) {
+            let apart = (a.eigenvalue - b.eigenvalue).norm() / b.eigenvalue.norm();
+            assert!(within(apart, 1e-8, Tolerance), "{apart:e}");
+        }
     }
 
     #[test]

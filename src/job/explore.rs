@@ -92,8 +92,8 @@ impl<'a> Explorer<'a> {
     ) -> Result<Self> {
         let (Start { nominal, case, .. }, others) = (start, start.others.iter().collect());
         let band = case.cea.as_ref().expect("a case with complex modes").band;
-        let frame = match &start.closed {
-            Some(closed) => FamilyFrame::closed(closed, others, band)?,
+        let frame = match start.closed() {
+            Some((closed, real)) => FamilyFrame::closed(closed, real, others, band)?,
             None => {
                 let displacement = &nominal.steady.displacement;
                 FamilyFrame::new(&nominal.system, displacement, &nominal.real, others, band)?

@@ -47,8 +47,12 @@ pub fn growth_without_split(
     if highest > 0.0
         && let Some(change) = without_split(point.prepared, REACH * highest, observer)?
     {
-        let found =
-            changed_eigenvalues((&point.system, &point.steady), (modes, &point.real), &unstable, &change)?;
+        let found = match change.terms.is_empty() {
+            true => unstable.iter().map(|k| Some(modes[*k].eigenvalue)).collect(),
+            false => {
+                changed_eigenvalues((&point.system, &point.steady), (modes, &point.real), &unstable, &change)?
+            }
+        };
         unstable.iter().zip(found).for_each(|(k, lambda)| growth[*k] = lambda.map(|lambda| lambda.re));
     }
     Ok(growth)

@@ -1,7 +1,7 @@
 //! A run under way: what its analyses share, and where their results go.
 
 use super::clock::Clock;
-use super::complex::whole_modes;
+use super::complex::{is_spanned_closed, whole_modes};
 use super::contact_surfaces::contact_surfaces;
 use super::known::KnownAnswers;
 use super::modes::{check_damping_frequencies, real_modes_below};
@@ -102,14 +102,17 @@ impl<'a, 'k> Run<'a, 'k> {
     }
 
     /// The real modes of the whole that span the complex analysis, where that is run, looks for a whole band and does not wait
-    /// for the preload of steady sliding. Other analyses may take their share.
+    /// for steady sliding. Other analyses may take their share.
     ///
     /// # Errors
     /// Modes that cannot be computed.
     pub fn basis(&mut self) -> Result<Option<&RealModes>> {
         let case = self.prepared.case;
         if self.basis.is_none()
-            && let Some(cea) = case.cea.as_ref().filter(|cea| !case.prestress && cea.nearest.is_none())
+            && let Some(cea) = case
+                .cea
+                .as_ref()
+                .filter(|cea| !case.prestress && cea.nearest.is_none() && !is_spanned_closed(self.prepared))
             && self.complex
         {
             let structure = &self.prepared.system.structure;

@@ -39,7 +39,7 @@ impl OperatingPoint<'_> {
         if modes.is_empty() {
             return Ok(SensitivityResult { modes: Vec::new(), left_out });
         }
-        let sensitivity = Sensitivity::new(&self.system, &self.steady, &self.real, &modes)?;
+        let sensitivity = Sensitivity::new(&self.system, &self.steady, self.open_modes(observer)?, &modes)?;
 
         observer.begin("sensitivities", Some(scalars.len() as u64));
         let of = |scalar: &CaseScalar| {

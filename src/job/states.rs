@@ -14,7 +14,8 @@ use crate::equilibrium::{self, PointState, SteadySolver, tangent_stiffness};
 use crate::error::Result;
 use crate::linalg::c64;
 use crate::linalg::multivector::gram;
-use crate::stability::{ClosedContact, ComplexMode, Family, FamilyCheck, SlidingState};
+use crate::modal::RealModes;
+use crate::stability::{ClosedContact, ComplexMode, Family, FamilyCheck, SlidingState, closed_modes};
 use crate::sweep::{AtOnce, Checked, MeasuredProblem, Modes, SweepProblem};
 use crate::system::Damping;
 use faer::Mat;
@@ -68,8 +69,8 @@ pub(super) struct Start<'a> {
     /// The case without its studies.
     pub(super) case: Case,
     solver: SteadySolver<'a>,
-    /// The structure with its contact closed, where that has many points.
-    pub(super) closed: Option<ClosedContact>,
+    /// The structure with its contact closed and its real modes, where that has more directions than there are real modes.
+    closed: Option<(ClosedContact, RealModes)>,
     dampings: Vec<(String, f64, f64)>,
     /// The damping of the structure with each of them at its other value.
     pub(super) others: Vec<Damping>,
@@ -81,13 +82,22 @@ impl<'a> Start<'a> {
         let case = nominal.prepared.case.without_studies();
         let dampings = dampings(nominal.prepared.case, &case)?;
         let others = dampings.iter().map(|d| other_damping(nominal, &case, d)).collect::<Result<_>>()?;
-        let OperatingPoint { system, steady, real, .. } = nominal;
+        let OperatingPoint { system, steady, real, closed, .. } = nominal;
         let k = tangent_stiffness(system, &steady.displacement)?;
         let solver = SteadySolver::new(system, k)?.near(steady);
         let reference = Reference::new(system, real);
         let top = TAU * case.cea.as_ref().expect("a case with complex modes").band[1];
-        let closed = ClosedContact::of((system, steady), real, top, &())?;
+        let closed = match closed {
+            Some(_) => None,
+            None => closed_modes((system, steady), real, top, &())?.map(|(closed, own, _)| (closed, own)),
+        };
         Ok(Start { nominal, case, solver, closed, dampings, others, reference })
+    }
+
+    /// The structure with its contact closed and its real modes, where the family is that of this.
+    pub(super) fn closed(&self) -> Option<(&ClosedContact, &RealModes)> {
+        let known = self.nominal.closed.as_ref().map(|closed| (closed, &self.nominal.real));
+        known.or(self.closed.as_ref().map(|(closed, real)| (closed, real)))
     }
 }
 

@@ -18,7 +18,8 @@ pub struct ComplexResult {
     pub modes: ComplexModes,
     /// From the free degrees of freedom, on which the vectors of the modes stand, to the nodes.
     pub dofs: Arc<DofMap>,
-    /// A few words on the real modes that take part in each mode: `61 % disc (0,1), 22 % (3,0)`.
+    /// A few words on the real modes that take part in each mode: `61 % disc (0,1), 22 % (3,0)`. Of more than 80 contact points they are those with the
+    /// contact closed, where no damping is given by mode.
     pub participation: Vec<String>,
     /// Names of the real modes, in the order that [`ComplexMode::participation`](crate::stability::ComplexMode)
     /// counts them: `disc (0, 1)`, `mode 1718 Hz`.

@@ -2,7 +2,7 @@
 
 use super::band::{Band, in_band, part_real_pairs};
 use super::basis::Basis;
-use super::closed::{ClosedContact, share_out};
+use super::closed::{closed_modes, share_out};
 use super::post_processing::post_processed;
 use super::projected::{SmallPair, project_interface, solve};
 use super::refinement::{Corrections, MeasuredPairs, PairMeasurement, TOGETHER};
@@ -59,12 +59,13 @@ pub(super) fn analyse<'a, T>(
     let (known, asked) = (known.into(), band.into());
     check(system, steady, known.real, asked.hz)?;
     let top = TAU * asked.hz[1];
-    let Some(closed) = ClosedContact::of((system, steady), known.real, top, observer)? else {
+    let Some((closed, own, shifted)) = closed_modes((system, steady), known.real, top, observer)? else {
         return solved(&Operator::new(system, steady)?, known, asked, observer, then);
     };
     let (mut modes, rest) = {
         let operator = Operator::new(&closed.system, &closed.steady)?;
-        solved(&operator, closed.structural(), asked, observer, then)?
+        let known = Structural { real: &own, shifted: Some(&shifted) };
+        solved(&operator, known, asked, observer, then)?
     };
     share_out(&mut modes.modes, system, known.real);
     Ok((modes, rest))
@@ -368,7 +369,7 @@ fn evaluate(
         let amplitudes = expand(scale.basis, chunk, &mut measured);
         scale.measure(&mut measured);
         if !last {
-            wanted.add(scale, &measured);
+            wanted.add(scale, &measured, asked.left_vectors);
         }
         let given: Vec<bool> = (0..chunk.len()).map(|j| last || measured.exact(j)).collect();
         let left = (asked.left_vectors && given.contains(&true)).then(|| scale.basis.expand(&measured.left));

@@ -6,8 +6,8 @@
 //! directions are more than the real modes, the spring of every point is added to K, real modes and factors are those of
 //! the closed structure, and what is left of the interface is friction and damping.
 
+use super::ComplexMode;
 use super::post_processing::shares;
-use super::{ComplexMode, Structural};
 use crate::dynamics::{Block, Interface};
 use crate::equilibrium::{SteadySliding, closed_structure};
 use crate::error::Result;
@@ -19,51 +19,61 @@ use crate::system::System;
 use faer::Mat;
 use std::f64::consts::TAU;
 
-/// The same linear system: K with K_σ and the springs of the contact, contact points without them, and its real modes.
+/// The same linear system: K with K_σ and the springs of the contact, and contact points without them.
 pub struct ClosedContact {
-    pub(super) system: System,
-    pub(super) steady: SteadySliding,
-    pub(super) real: RealModes,
-    shifted: ShiftedStiffness,
+    /// The system; its real modes are those of the structure with its contact closed.
+    pub system: System,
+    /// Its state, whose points have friction and damping alone.
+    pub steady: SteadySliding,
     /// What of each point is part of K \[N/m\], along g, t₁, t₂.
     pub(super) springs: Vec<[f64; 3]>,
 }
 
 impl ClosedContact {
-    /// Of a system whose interface acts in more directions than there are `real` modes in a band up to `top` \[rad/s\]; none
-    /// otherwise. The real modes reach as far as those given.
+    /// Of `system` at a steady state.
     ///
     /// # Errors
-    /// A stiffness that cannot be factorised; real modes that do not converge.
-    pub fn of(
-        (system, steady): (&System, &SteadySliding),
-        real: &RealModes,
-        top: f64,
-        observer: &dyn Observer,
-    ) -> Result<Option<Self>> {
-        let springs: Vec<[f64; 3]> = steady.points.iter().map(|point| point.tangent.springs()).collect();
-        let many = springs.as_flattened().iter().any(|k| *k != 0.0)
-            && Interface::new(system, steady).active(top).len() > real.len();
-        if !many || real.len() == system.n_dofs() {
-            return Ok(None);
-        }
+    /// A geometric stiffness that cannot be worked out.
+    pub fn of(system: &System, steady: &SteadySliding) -> Result<Self> {
+        let springs = springs(steady);
         let structure = closed_structure(system, steady)?;
-        let counted = real.certificate.below_hz;
-        let below = if real.certificate.holds() { counted } else { top / TAU };
-        let (real, shifted) = compute(&structure, ModesWanted::BelowHz(below), observer)?;
         let mut steady = steady.clone();
         steady
             .points
             .iter_mut()
             .for_each(|point| point.tangent = point.tangent.without(point.tangent.springs()));
-        let system = System { structure, prestress: None, ..system.clone() };
-        Ok(Some(ClosedContact { system, steady, real, shifted, springs }))
+        Ok(ClosedContact { system: System { structure, prestress: None, ..system.clone() }, steady, springs })
     }
+}
 
-    /// Its real modes and factors.
-    pub(super) fn structural(&self) -> Structural<'_> {
-        Structural { real: &self.real, shifted: Some(&self.shifted) }
+/// A closed system with its real modes, and factors at a shift among them.
+pub type ClosedModes = (ClosedContact, RealModes, ShiftedStiffness);
+
+/// The closed system where the interface acts in more directions than there are `real` modes in a band up to `top` \[rad/s\]; none
+/// otherwise. Its real modes reach as far as those given.
+///
+/// # Errors
+/// A stiffness that cannot be factorised; real modes that do not converge.
+pub fn closed_modes(
+    (system, steady): (&System, &SteadySliding),
+    real: &RealModes,
+    top: f64,
+    observer: &dyn Observer,
+) -> Result<Option<ClosedModes>> {
+    let many = springs(steady).as_flattened().iter().any(|k| *k != 0.0)
+        && Interface::new(system, steady).active(top).len() > real.len();
+    if !many || real.len() == system.n_dofs() {
+        return Ok(None);
     }
+    let closed = ClosedContact::of(system, steady)?;
+    let counted = real.certificate.below_hz;
+    let below = if real.certificate.holds() { counted } else { top / TAU };
+    let (real, shifted) = compute(&closed.system.structure, ModesWanted::BelowHz(below), observer)?;
+    Ok(Some((closed, real, shifted)))
+}
+
+fn springs(steady: &SteadySliding) -> Vec<[f64; 3]> {
+    steady.points.iter().map(|point| point.tangent.springs()).collect()
 }
 
 /// Gives the modes their shares of `real` modes other than those of the basis.

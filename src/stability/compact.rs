@@ -109,7 +109,7 @@ fn principal(snapshots: &Mat<f64>, energy: &Mat<f64>, first: usize, tolerance: f
 #[cfg(test)]
 mod tests {
     use super::super::tests::{damped, dense_eigenvalues, dense_modes, nearest, steady};
-    use super::super::{ClosedContact, Family, FamilyFrame, SlidingState, complex_modes};
+    use super::super::{Family, FamilyFrame, SlidingState, closed_modes, complex_modes};
     use super::LARGE;
     use crate::bounds::{Origin::*, within};
     use crate::contact::{Coulomb, NormalLaw, SlidingLaw};
@@ -135,9 +135,9 @@ mod tests {
             }
             let real = dense_modes(&system, 40);
             let band = [0.01, 0.5 * (real.frequency_hz(4) + real.frequency_hz(5))];
-            let closed =
-                ClosedContact::of((&system, &reference), &real, TAU * band[1], &()).unwrap().unwrap();
-            let frame = FamilyFrame::closed(&closed, Vec::new(), band).unwrap();
+            let (closed, own, _) =
+                closed_modes((&system, &reference), &real, TAU * band[1], &()).unwrap().unwrap();
+            let frame = FamilyFrame::closed(&closed, &own, Vec::new(), band).unwrap();
             let at = |friction: f64, stiffness: f64| {
                 let mut state = reference.clone();
                 for point in &mut state.points {
@@ -199,8 +199,9 @@ mod tests {
         let (system, reference) = at(0.3, 400.0);
         let real = dense_modes(&system, 44);
         let band = [0.01, 0.5 * (real.frequency_hz(8) + real.frequency_hz(9))];
-        let closed = ClosedContact::of((&system, &reference), &real, TAU * band[1], &()).unwrap().unwrap();
-        let frame = FamilyFrame::closed(&closed, Vec::new(), band).unwrap();
+        let (closed, own, _) =
+            closed_modes((&system, &reference), &real, TAU * band[1], &()).unwrap().unwrap();
+        let frame = FamilyFrame::closed(&closed, &own, Vec::new(), band).unwrap();
         let member = |steady: &SteadySliding| SlidingState {
             points: steady.points.clone(),
             damping_weights: vec![1.0],

@@ -105,14 +105,19 @@ impl<'a> FamilyFrame<'a> {
         FamilyFrame::with((system, displacement, &[]), real, dampings, band_hz)
     }
 
-    /// [`FamilyFrame::new`] of a structure closed by many contact points. States have their own stiffness of contact; the nearer it is
+    /// [`FamilyFrame::new`] of a structure closed by many contact points, with its real modes. States have their own stiffness of contact; the nearer it is
     /// to that of the closed structure, the fewer vectors it takes.
     ///
     /// # Errors
     /// As [`FamilyFrame::new`].
-    pub fn closed(closed: &'a ClosedContact, dampings: Vec<&'a Damping>, band_hz: [f64; 2]) -> Result<Self> {
+    pub fn closed(
+        closed: &'a ClosedContact,
+        real: &'a RealModes,
+        dampings: Vec<&'a Damping>,
+        band_hz: [f64; 2],
+    ) -> Result<Self> {
         let structure = (&closed.system, &*closed.steady.displacement, &*closed.springs);
-        FamilyFrame::with(structure, &closed.real, dampings, band_hz)
+        FamilyFrame::with(structure, real, dampings, band_hz)
     }
 
     fn with(
@@ -330,7 +335,7 @@ impl<'f> Family<'f> {
             measured.left = of(&modes.left);
             basis.expand_into(&of(&modes.right), &mut measured.right);
             scale.measure(&mut measured);
-            wanted.add(&scale, &measured);
+            wanted.add(&scale, &measured, true);
             check.eigenvalues.extend(lambda);
             check.backward_errors.extend(&measured.backward_error);
             check.eigenvalue_errors.extend((0..lambda.len()).map(|j| measured.error(j)));

@@ -42,7 +42,7 @@ pub use advice::PointRates;
 pub use band::Band;
 pub use certificate::{Certificate, CloseCall, CountSize, SLOWEST_GROWTH, certified_modes};
 pub use changed::{StiffnessChange, changed_eigenvalues};
-pub use closed::ClosedContact;
+pub use closed::{ClosedContact, ClosedModes, closed_modes};
 pub use complex::{complex_eigenvalues, complex_modes};
 pub use family::{Family, FamilyCheck, FamilyFrame, FamilyModes, SlidingState};
 pub use filter::{ModalFilter, modal_filter};

@@ -175,8 +175,8 @@ impl Corrections {
         Corrections { most, right: Mat::new(), left: Mat::new(), random: None }
     }
 
-    /// Adds those of the pairs that are not exact.
-    pub(super) fn add(&mut self, scale: &PairMeasurement<'_>, measured: &MeasuredPairs) {
+    /// Adds those of the pairs that are not exact. Left ones are of use as long as λ is not exact, and where left vectors are `kept`.
+    pub(super) fn add(&mut self, scale: &PairMeasurement<'_>, measured: &MeasuredPairs, kept: bool) {
         let open: Vec<usize> = (0..measured.lambda.len()).filter(|j| !measured.exact(*j)).collect();
         if open.is_empty() {
             return;
@@ -186,15 +186,20 @@ impl Corrections {
             self.right = Mat::with_capacity(n, 2 * self.most + left);
             self.left = Mat::with_capacity(n, left);
         }
-        let lambda: Vec<c64> = open.iter().map(|j| measured.lambda[*j]).collect();
-        let factors: Vec<f64> = lambda.iter().map(|z| 1.0 / z.norm().max(1e-3 * scale.top)).collect();
-        let scaled = |mut block: Block| {
-            block.scale(&factors);
+        let scaled = |which: &[usize], mut block: Block| {
+            let factor = |j: &usize| 1.0 / measured.lambda[*j].norm().max(1e-3 * scale.top);
+            block.scale(&which.iter().map(factor).collect::<Vec<f64>>());
             block.into_parts()
         };
-        append(&mut self.right, scaled(Block::gathered(&measured.correction, &open)).as_ref());
-        let left = scale.basis.expand(&Block::gathered(&measured.left, &open));
-        self.add_left(scaled(scale.operator.value(Side::Left, &lambda, &left)));
+        append(&mut self.right, scaled(&open, Block::gathered(&measured.correction, &open)).as_ref());
+        let mut left = open;
+        left.retain(|j| kept || measured.eigenvalue_error[*j] > EIGENVALUE_ERROR);
+        if left.is_empty() {
+            return;
+        }
+        let lambda: Vec<c64> = left.iter().map(|j| measured.lambda[*j]).collect();
+        let vectors = scale.basis.expand(&Block::gathered(&measured.left, &left));
+        self.add_left(scaled(&left, scale.operator.value(Side::Left, &lambda, &vectors)));
     }
 
     fn add_left(&mut self, new: Mat<f64>) {
@@ -219,8 +224,10 @@ impl Corrections {
     /// The corrections, one a column; the left ones are solved for here.
     pub(super) fn corrections(self, factor: &dyn SymmetricFactor) -> Mat<f64> {
         let Corrections { right: mut all, mut left, .. } = self;
-        factor.solve_in_place(left.as_mut());
-        append(&mut all, left.as_ref());
+        if left.ncols() > 0 {
+            factor.solve_in_place(left.as_mut());
+            append(&mut all, left.as_ref());
+        }
         all
     }
 }

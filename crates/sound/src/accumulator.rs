@@ -202,6 +202,7 @@ impl SoundAccumulator {
             resolution_hz,
             plates,
             mode_shares,
+            mode_names: Vec::new(),
             tones: tones(&each, resolution_hz),
             microphones,
         }

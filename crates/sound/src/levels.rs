@@ -16,6 +16,8 @@ pub struct Sound {
     pub plates: Vec<(String, Vec<f64>)>,
     /// The share of each real mode in the power; negative for a mode that absorbs power radiated by others.
     pub mode_shares: Vec<f64>,
+    /// A few words on each of these modes, once they are named.
+    pub mode_names: Vec<String>,
     /// The peaks of the power, strongest lines of it: amplitude² is their height in W.
     pub tones: Vec<Tone>,
     /// Pressure at each microphone.

@@ -75,7 +75,7 @@ impl Sliding {
     ) -> Result<Vec<Option<Level>>> {
         let found: Vec<usize> = levels.iter().filter_map(|level| level.first().copied()).collect();
         let modes: Vec<&ComplexMode> = found.iter().map(|k| &self.modes()[*k]).collect();
-        let sensitivity = Sensitivity::new(&point.system, &point.steady, &point.real, &modes)?;
+        let sensitivity = Sensitivity::new(&point.system, &point.steady, point.open_modes(&())?, &modes)?;
         let mut slopes = vec![vec![0.0; unknowns.len()]; modes.len()];
         for (j, (scalars, rate)) in unknowns.iter().enumerate() {
             for scalar in scalars {

@@ -9,6 +9,7 @@ use crate::stability::complex_modes;
 use crate::system::Coupling;
 use faer::Mat;
 use std::borrow::Cow;
+use std::sync::OnceLock;
 
 /// Nodal diameters of the double mode.
 const N: f64 = 2.0;
@@ -89,6 +90,8 @@ fn flutter_by_an_uneven_mesh_is_gone_without_the_split() {
                 steady: steady.into(),
                 system: Cow::Borrowed(&prepared.system),
                 real,
+                closed: None,
+                open: OnceLock::new(),
             };
             let without = growth_without_split(&point, &modes, &()).unwrap();
             if even {

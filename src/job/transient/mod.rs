@@ -29,6 +29,7 @@ mod step;
 pub use in_time::InTime;
 pub use places::{TransientPlaces, places};
 
+use super::modes::{identify, labels};
 use super::sink::ResultSink;
 use super::time_function::profile;
 use crate::case::{SchemeChoice, TransientAnalysis};
@@ -121,12 +122,16 @@ impl InTime<'_> {
         };
         let top = WATCHED * self.complex.band_hz[1];
         // Real modes are complete up to their highest.
-        let highest = (0..point.real.len()).map(|k| point.real.frequency_hz(k)).fold(0.0, f64::max);
-        let modes = (&point.real.shapes, highest);
-        let accumulator =
-            acoustics.map(|acoustics| SoundAccumulator::new(acoustics, modes, (plan.step, steps)));
+        let real = match acoustics {
+            Some(_) => Some(point.open_modes(observer)?),
+            None => None,
+        };
+        let accumulator = acoustics.zip(real).map(|(acoustics, real)| {
+            let highest = (0..real.len()).map(|k| real.frequency_hz(k)).fold(0.0, f64::max);
+            SoundAccumulator::new(acoustics, (&real.shapes, highest), (plan.step, steps))
+        });
         let mass = reduced.is_none().then_some(&*point.system.structure.mass);
-        let modal = accumulator.as_ref().map(|_| ModalMotion::new(&point.real, mass));
+        let modal = real.map(|real| ModalMotion::new(real, mass));
         let along = disturbed.as_ref().map(|along| along.eigenvalue);
         let mut recorder =
             Recorder::new((&point.system, heaviest), steady, &model, (probes, gauges), disturbed, modal);
@@ -154,8 +159,10 @@ impl InTime<'_> {
         let mut sound = accumulator
             .map(|accumulator| history_writer.recorded_sound(accumulator, steps + 1))
             .transpose()?;
-        if let Some(sound) = &mut sound {
+        if let Some((sound, real)) = sound.as_mut().zip(real) {
             sound.name_tones(found.spectra.iter().flat_map(|of| &of.peaks));
+            let whole = (&point.prepared.model, &*point.prepared.assembled);
+            sound.mode_names = labels(&identify(point.prepared, real, whole), real);
         }
         let first = |name: &str, count: usize| history_writer.sink.recorded(name, 0..count);
         let own = (&*point.system, &*point.steady, self.complex);
@@ -214,7 +221,13 @@ impl InTime<'_> {
         let stations = stations.flat_map(|point| [&point.normal, &point.tangents[0], &point.tangents[1]]);
         let pushed = pushes.iter().map(|push| &push.direction);
         let forces: Vec<SparseVector> = pushed.chain(stations).cloned().collect();
-        let reduced = reduce(&self.point.system, &self.point.steady, &self.point.real, &forces, many_points)?;
+        let reduced = reduce(
+            &self.point.system,
+            &self.point.steady,
+            self.point.open_modes(&())?,
+            &forces,
+            many_points,
+        )?;
         pushes.iter_mut().for_each(|push| push.direction = reduced.form(&push.direction));
         probes.iter_mut().for_each(|probe| probe.direction = reduced.form(&probe.direction));
         for gauge in gauges {

@@ -28,7 +28,6 @@ pub(super) fn sections(results: &RunResults) -> Vec<ReportSection> {
         contact::picture(results),
         sound::picture(results),
     ];
-    let modes = complex.map_or(&[][..], |complex| &complex.real_modes);
     let check = run.reduced_check.as_ref().map(|check| reduced_check::table(check, complex));
     let section = ReportSection::new("Motion in time")
         .findings([finding::motion(run)])
@@ -36,7 +35,7 @@ pub(super) fn sections(results: &RunResults) -> Vec<ReportSection> {
         .pictures(pictures.into_iter().flatten())
         .markup(run.sound.as_ref().and_then(player))
         .tables(Display::Titled, [table::table(run)])
-        .tables(Display::Titled, sound::table(run, modes))
+        .tables(Display::Titled, sound::table(run))
         .tables(Display::Titled, check);
     vec![section]
 }

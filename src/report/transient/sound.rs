@@ -108,7 +108,7 @@ fn label(chart: &mut Chart, sound: &Sound, levels: &[f64], end: f64) {
 }
 
 /// How loud a run is.
-pub(in crate::report) fn table(run: &TransientResult, real_modes: &[String]) -> Option<ReportTable> {
+pub(in crate::report) fn table(run: &TransientResult) -> Option<ReportTable> {
     let sound = run.sound.as_ref()?;
     let headings = ["tone [Hz]", "power level [dB]", "share of the power [%]", "<is"];
     let [level, weighted] = sound.power_levels();
@@ -152,7 +152,7 @@ pub(in crate::report) fn table(run: &TransientResult, real_modes: &[String]) -> 
         .iter()
         .map(|(name, lines)| format!("{name} {}", percent(lines.iter().sum::<f64>() / whole)))
         .collect();
-    let mut modes: Vec<(f64, &String)> = sound.mode_shares.iter().copied().zip(real_modes).collect();
+    let mut modes: Vec<(f64, &String)> = sound.mode_shares.iter().copied().zip(&sound.mode_names).collect();
     modes.sort_by(|a, b| b.0.total_cmp(&a.0));
     let modes: Vec<String> =
         modes.iter().take(MODES).map(|(share, name)| format!("{name} {}", percent(*share))).collect();
