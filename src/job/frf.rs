@@ -1,5 +1,6 @@
 //! Frequency responses of a case.
 
+use super::frf_stability::unstable_modes;
 use super::modes::{
     check_damping_frequencies, damping_of_response, identify, labels, response_needs, without_prestress,
 };
@@ -13,7 +14,7 @@ use crate::linalg::{SparseMatrix, SparseVector, c64};
 use crate::modal::{ModesWanted, RealModes, compute};
 use crate::progress::Observer;
 use crate::reduction::{DampingOfModes, MODES, Receptance, Reduced};
-use crate::results::{FrfResponse, FrfResult, PlaceAndDirection, Resonance};
+use crate::results::{ComplexResult, FrfResponse, FrfResult, PlaceAndDirection, Resonance};
 use crate::system::System;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
@@ -117,14 +118,14 @@ impl PreparedFrf<'_> {
     }
 
     /// The response, and the receptances that were requested besides \[m/N\]; `steady` is steady sliding, where the
-    /// contacts slide.
+    /// contacts slide, `known` the complex analysis about it, if the run has one.
     ///
     /// # Errors
     /// Modes that cannot be computed, a resonance that nothing damps.
     pub fn run(
         &self,
         prepared: &Prepared<'_>,
-        steady: Option<&SteadySliding>,
+        (steady, known): (Option<&SteadySliding>, Option<&ComplexResult>),
         observer: &dyn Observer,
     ) -> Result<(FrfResult, Vec<Vec<c64>>)> {
         let FrfAnalysis { quantity, band, solution, .. } = *self.wanted;
@@ -133,11 +134,16 @@ impl PreparedFrf<'_> {
             std::iter::once(&self.force.direction).chain(&places).cloned().collect();
         let steady = steady.filter(|_| self.slides());
         check_damping_frequencies(&prepared.system.structure, prepared.case, 2.0 * band[1])?;
-        let Receptance { system, steady, real, reduced, small } = {
+        let receptance = {
             let of = |mass: &SparseMatrix, real: &RealModes| damping_of_response(mass, real, prepared.case);
             let damping = DampingOfModes { of: &of, needs_below: response_needs(prepared.case) };
             Receptance::new(&prepared.system, steady, (band[1], &forms), damping, observer)?
         };
+        let unstable = match self.reciprocal() {
+            true => Vec::new(),
+            false => unstable_modes(&receptance, band[1], known, observer)?,
+        };
+        let Receptance { system, steady, real, reduced, small } = receptance;
         let few = Harmonic::new(&small.0, &small.1)?;
         let full = Harmonic::new(&system, &steady)?;
         let (force, seen) = (reduced.form(&self.force.direction), places.iter().map(|p| reduced.form(p)));
@@ -208,6 +214,7 @@ impl PreparedFrf<'_> {
             excitation: self.force.place.clone(),
             responses: responses.collect(),
             resonances,
+            unstable,
             measured: self.wanted.measured.clone(),
             deviation,
             compared: COMPARED,
@@ -413,7 +420,11 @@ solution = "direct"
         let case = Case::parse("disc", text, ".".into()).unwrap();
         let prepared = Prepared::new(&case).unwrap();
         let steady = solve_steady(&prepared.system, &SteadyOptions::default(), &()).unwrap();
-        frfs(&prepared).unwrap().iter().map(|frf| frf.run(&prepared, Some(&steady), &()).unwrap().0).collect()
+        frfs(&prepared)
+            .unwrap()
+            .iter()
+            .map(|frf| frf.run(&prepared, (Some(&steady), None), &()).unwrap().0)
+            .collect()
     }
 
     #[test]

@@ -29,6 +29,7 @@ mod export;
 mod folder;
 mod forces;
 mod frf;
+mod frf_stability;
 mod imported;
 mod known;
 mod links;

@@ -24,9 +24,10 @@ use crate::linalg::factor::factorize;
 use crate::linalg::multivector::{beside, combine, expand, gram};
 use crate::linalg::sparse::{add_scaled, dense_columns, diagonal_matrix, entry, times};
 use crate::linalg::{Engine, SparseMatrix, SparseVector};
-use crate::modal::RealModes;
+use crate::modal::{RealModes, SturmCertificate};
 use crate::system::{ContactPair, ContactPoint, Coupling, Damping, Structure, System};
 use faer::{Accum, Mat, MatRef};
+use std::f64::consts::TAU;
 
 /// A reduced system with the basis that leads back.
 #[derive(Debug, Clone)]
@@ -65,6 +66,24 @@ impl Reduced {
     pub fn dual(&self, x: &[f64]) -> Vec<f64> {
         let x = MatRef::from_column_major_slice(x, x.len(), 1);
         gram(self.basis.as_ref(), x).col_as_slice(0).to_vec()
+    }
+
+    /// Its real modes, which are its coordinates.
+    pub fn real_modes(&self) -> RealModes {
+        let stiffness = &self.system.structure.stiffness;
+        let m = stiffness.ncols();
+        let mut order: Vec<usize> = (0..m).collect();
+        order.sort_by(|a, b| stiffness[(*a, *a)].total_cmp(&stiffness[(*b, *b)]));
+        let squares: Vec<f64> = order.iter().map(|k| stiffness[(*k, *k)]).collect();
+        let below_hz = 2.0 * squares.last().copied().unwrap_or(0.0).max(0.0).sqrt() / TAU;
+        RealModes {
+            shapes: Mat::from_fn(m, m, |i, j| f64::from(i == order[j])),
+            backward_errors: vec![0.0; m],
+            rigid_bodies: squares.iter().take_while(|s| **s <= 0.0).count(),
+            negative: 0,
+            certificate: SturmCertificate { below_hz, shifts_hz: [below_hz; 2], counted: [m; 2], found: m },
+            eigenvalues: squares,
+        }
     }
 
     /// V q.

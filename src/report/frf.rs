@@ -15,6 +15,8 @@ const HIDDEN: f64 = 0.01;
 const DEVIATION: f64 = 0.01;
 /// A measured resonance is paired with a mode that differs from it by less than this part.
 const NEAR: f64 = 0.05;
+/// Unstable modes that a finding names.
+const NAMED: usize = 3;
 
 /// Every frequency response.
 pub(super) fn sections(results: &RunResults) -> Vec<ReportSection> {
@@ -29,6 +31,14 @@ pub(super) fn sections(results: &RunResults) -> Vec<ReportSection> {
 
 /// The largest response, and whether superposition and the direct solution agree.
 fn finding(frf: &FrfResult) -> Finding {
+    if !frf.unstable.is_empty() {
+        let words = format!(
+            "Frequency response {}: about an unstable state ({}); no test measures it.",
+            frf.name,
+            frf.unstable_words(NAMED)
+        );
+        return Finding::new(FindingClass::Attention, words);
+    }
     let undamped = frf.undamped().count();
     if undamped > 0 {
         let words = format!(
@@ -67,8 +77,10 @@ fn finding(frf: &FrfResult) -> Finding {
 
 fn caption(frf: &FrfResult) -> String {
     let measured = if frf.measured.is_empty() { "" } else { " Blue: measured resonances." };
+    let unstable =
+        if frf.unstable.is_empty() { "" } else { " About an unstable state: not what a test measures." };
     format!(
-        "{} for a force at {}; {}. Dotted: natural frequencies.{measured}",
+        "{} for a force at {}; {}. Dotted: natural frequencies.{measured}{unstable}",
         capital(frf.quantity.word()),
         frf.excitation,
         frf.about
@@ -140,6 +152,11 @@ fn table(frf: &FrfResult) -> ReportTable {
     let node = "Hidden: the place or the force stands on a node of the mode.";
     table.notes.push(node.into());
     table.notes.push(format!("{}; {} frequencies.", capital(&frf.about), frf.frequencies_hz.len()));
+    if !frf.unstable.is_empty() {
+        table
+            .notes
+            .push(format!("Unstable: {}; no steady response is reached.", frf.unstable_words(usize::MAX)));
+    }
     table.notes.push(format!(
         "Superposition differs from the direct solution by {} at most, at {} frequencies.",
         power(frf.deviation),

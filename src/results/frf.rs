@@ -4,6 +4,9 @@ use super::file_name;
 use crate::dataset::{Describe, Dimension, Group, Table, Values, Variable, column};
 use crate::linalg::c64;
 use crate::measured::Quantity;
+use crate::numbers::{growth, hertz};
+use crate::stability::ROUND_OFF;
+use std::f64::consts::TAU;
 
 /// A peak is paired with a measured one that differs from it by less than this part.
 const NEAR: f64 = 0.05;
@@ -27,6 +30,8 @@ pub struct FrfResult {
     pub responses: Vec<FrfResponse>,
     /// The real modes in the band.
     pub resonances: Vec<Resonance>,
+    /// λ \[1/s\] of the unstable modes about the state of the response, ascending in frequency: where there is one, no response is reached.
+    pub unstable: Vec<c64>,
     /// Resonances that were measured \[Hz\].
     pub measured: Vec<f64>,
     /// At some of the frequencies, the largest difference of superposition and direct solution over the latter.
@@ -77,6 +82,19 @@ impl FrfResult {
     /// The resonances that nothing damps.
     pub fn undamped(&self) -> impl Iterator<Item = &Resonance> {
         self.resonances.iter().filter(|resonance| resonance.undamped)
+    }
+
+    /// Frequencies and growth rates of the unstable modes, no more than `most` of them: `the mode at 101.3 Hz (σ = +5.12 1/s)`.
+    pub fn unstable_words(&self, most: usize) -> String {
+        let mode =
+            |l: &c64| format!("{} Hz (σ = {} 1/s)", hertz(l.im / TAU, 1), growth(l.re, l.norm(), ROUND_OFF));
+        let named: Vec<String> = self.unstable.iter().take(most).map(mode).collect();
+        let more = match self.unstable.len().saturating_sub(most) {
+            0 => String::new(),
+            rest => format!(" and {rest} more"),
+        };
+        let modes = if self.unstable.len() == 1 { "mode" } else { "modes" };
+        format!("the {modes} at {}{more}", named.join(", "))
     }
 
     /// The frequency \[Hz\] of the highest peak of a place that differs from `hz` by less than 5 %; a peak stands above
@@ -139,6 +157,15 @@ impl FrfResult {
         let band = ends.map(|hz| hz.copied().unwrap_or(f64::NAN)).to_vec();
         let responses = self.responses.iter().enumerate();
         let undamped: Vec<&Resonance> = self.undamped().collect();
+        let unstable_columns = [
+            column("frequency_hz", "Hz", "ω/2π", |lambda: &c64| lambda.im / TAU),
+            column(
+                "growth_rate",
+                "1/s",
+                "σ of a mode that leaves the state of the response",
+                |lambda: &c64| lambda.re,
+            ),
+        ];
         let undamped_columns = [column(
             "frequency_hz",
             "Hz",
@@ -160,6 +187,7 @@ impl FrfResult {
             )
             .value("compared", "1", "frequencies at which both were compared", self.compared)
             .table(Table::of("undamped", "resonance", &undamped_columns, &undamped))
+            .table(Table::of("unstable", "mode", &unstable_columns, &self.unstable))
             .list("responses", responses.map(|(place, of)| of.group(place, self)).collect())
             .table(self.lines().file(file_name("frf", &self.name)))
     }

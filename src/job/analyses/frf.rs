@@ -4,8 +4,10 @@ use super::analysis::{Analysis, Planned, Scope};
 use crate::error::{Faults, Result};
 use crate::job::compare::{Tests, has_measured_frf};
 use crate::job::frf::{self, frfs};
+use crate::job::frf_stability::unsteady;
 use crate::job::prepared::Prepared;
 use crate::job::run::Run;
+use crate::results::ComplexResult;
 
 /// Frequency responses.
 pub const FRF: Analysis = Analysis {
@@ -51,9 +53,12 @@ impl<'a> Planned<'a> for PlannedFrfs<'a> {
         for frf in &self.frfs {
             let steady = if frf.slides() { Some(run.steady()?) } else { None };
             let phase = format!("frequency response {}", frf.name());
-            let (response, beside) =
-                run.timed(&phase, |observer| frf.run(prepared, steady.as_deref(), observer))?;
+            let known = run.results.get::<ComplexResult>();
+            let at = (steady.as_deref(), known.filter(|_| steady.is_some()));
+            let observer = run.observer;
+            let (response, beside) = run.clock.time(&phase, || frf.run(prepared, at, observer))?;
             run.results.warnings.extend(frf::undamped(&response));
+            run.results.warnings.extend(unsteady(&response));
             let compared = self.tests.responses(&response, &beside);
             run.found(response)?;
             compared.into_iter().try_for_each(|comparison| run.found(comparison))?;

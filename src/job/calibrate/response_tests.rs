@@ -21,7 +21,7 @@ fn case(folder: &Path, text: &str, values: &[(&str, f64)], hz: &[f64]) -> Case {
     let prepared = Prepared::new(&made).unwrap();
     let mut all = frfs(&prepared).unwrap();
     let answers: Vec<usize> = (0..2).map(|place| all[0].also_at(place, hz.to_vec())).collect();
-    let (_, beside) = all[0].run(&prepared, None, &()).unwrap();
+    let (_, beside) = all[0].run(&prepared, (None, None), &()).unwrap();
     let values: Vec<Vec<_>> = answers
         .iter()
         .map(|k| hz.iter().zip(&beside[*k]).map(|(hz, h)| Quantity::Mobility.factor(*hz) * h).collect())

@@ -142,7 +142,7 @@ fn measured_responses_stand_beside_computed_ones_at_their_own_frequencies() {
     let mut responses = frfs(&prepared).unwrap();
     let hz: Vec<f64> = (0..60).map(|k| 40.0 + 7.0 * f64::from(k)).collect();
     let answer = responses[0].also_at(0, hz.clone());
-    let (_, beside) = responses[0].run(&prepared, None, &()).unwrap();
+    let (_, beside) = responses[0].run(&prepared, (None, None), &()).unwrap();
     let values: Vec<c64> =
         hz.iter().zip(&beside[answer]).map(|(hz, h)| -Quantity::Mobility.factor(*hz) * h).collect();
     let force = seen(responses[0].force().at, true);
@@ -166,7 +166,7 @@ fn measured_responses_stand_beside_computed_ones_at_their_own_frequencies() {
     let prepared = Prepared::new(&with).unwrap();
     let mut responses = frfs(&prepared).unwrap();
     let tests = Tests::of_responses(&prepared, &mut responses).unwrap();
-    let (computed, beside) = responses[0].run(&prepared, None, &()).unwrap();
+    let (computed, beside) = responses[0].run(&prepared, (None, None), &()).unwrap();
     let all = tests.responses(&computed, &beside);
     let [pair] = &all[0].pairs[..] else { panic!("one pair: {:?}", all[0].measured_alone) };
     assert!(pair.swapped && pair.place == "inside" && pair.quantity == Quantity::Mobility);

@@ -7,14 +7,11 @@ use crate::equilibrium::SteadySliding;
 use crate::error::Result;
 use crate::job::sink::{Histories, Memory, ResultStage};
 use crate::linalg::c64;
-use crate::modal::{RealModes, SturmCertificate};
 use crate::progress::Observer;
 use crate::reduction::Reduced;
 use crate::results::{ComplexResult, Deviation, MotionCompared, ReducedCheck};
 use crate::stability::{ComplexModes, complex_modes};
 use crate::system::System;
-use faer::Mat;
-use std::f64::consts::TAU;
 
 /// Below this part of |λ| a growth rate is round-off.
 const NO_GROWTH: f64 = 1e-9;
@@ -67,7 +64,7 @@ pub(super) fn reduced_check(
     let [low, high] = complex.band_hz;
     // A mode at the edge may come to lie beyond it.
     let band = [0.9 * low, 1.1 * high];
-    let own = complex_modes(system, &own, &own_modes(reduced), band, observer)?;
+    let own = complex_modes(system, &own, &reduced.real_modes(), band, observer)?;
     let partners = partners(modes, &own);
     let of = |k: usize| modes.modes[k].eigenvalue;
     let shift =
@@ -90,24 +87,6 @@ pub(super) fn reduced_check(
 
 fn larger(a: &Deviation, b: &Deviation) -> std::cmp::Ordering {
     a.relative.total_cmp(&b.relative)
-}
-
-/// The real modes of the reduced model, which are its coordinates.
-fn own_modes(reduced: &Reduced) -> RealModes {
-    let stiffness = &reduced.system.structure.stiffness;
-    let m = stiffness.ncols();
-    let mut order: Vec<usize> = (0..m).collect();
-    order.sort_by(|a, b| stiffness[(*a, *a)].total_cmp(&stiffness[(*b, *b)]));
-    let squares: Vec<f64> = order.iter().map(|k| stiffness[(*k, *k)]).collect();
-    let below_hz = 2.0 * squares.last().copied().unwrap_or(0.0).max(0.0).sqrt() / TAU;
-    RealModes {
-        shapes: Mat::from_fn(m, m, |i, j| f64::from(i == order[j])),
-        backward_errors: vec![0.0; m],
-        rigid_bodies: squares.iter().take_while(|s| **s <= 0.0).count(),
-        negative: 0,
-        certificate: SturmCertificate { below_hz, shifts_hz: [below_hz; 2], counted: [m; 2], found: m },
-        eigenvalues: squares,
-    }
 }
 
 /// For each mode of the full model the eigenvalue of the reduced one that is its own: the nearest pairs first.
