@@ -69,7 +69,7 @@ impl Observer for Bars {
             let template = if total.is_some() {
                 "{msg:26} [{bar:20}] {pos}/{len} {elapsed}{left}"
             } else {
-                "{msg:26} {spinner} {elapsed}"
+                "{msg:26} {spinner} {elapsed} {prefix}"
             };
             if let Ok(style) = ProgressStyle::with_template(template) {
                 bar.set_style(style.progress_chars("=> ").with_key("left", left));
@@ -80,6 +80,10 @@ impl Observer for Bars {
 
     fn advance(&self, steps: u64) {
         self.with_bar(|bar| bar.inc(steps));
+    }
+
+    fn status(&self, words: &str) {
+        self.with_bar(|bar| bar.set_prefix(words.to_string()));
     }
 
     fn end(&self) {

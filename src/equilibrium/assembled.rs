@@ -9,10 +9,12 @@
 //! points that stick, whose friction depends on t₁ᵀu and t₂ᵀu. GMRES solves it, preconditioned by the symmetric \[A b; bᵀ e\], A = K + Σ d g gᵀ, b = Σ d g, e = Σ d, which differs from it by friction, and by
 //! the points that have opened or closed since A was factorised.
 
+use super::PointState;
 use super::SteadySliding;
+use super::balance::states;
 use super::condensed::closed_factor;
 use super::linear::{add_reaction, directions, elastic_force, springs};
-use super::load_steps::Newton;
+use super::load_steps::{Lost, Newton, Watch};
 use super::point_laws::{
     Fraction, Law, PointLaws, State, are_finite, force_change, largest_force, norm, slid,
 };
@@ -21,6 +23,7 @@ use crate::linalg::gmres::gmres;
 use crate::linalg::lu::Lu;
 use crate::linalg::sparse::{add_scaled, sum_of_squares};
 use crate::linalg::{Engine, SparseMatrix, SymmetricFactor};
+use crate::progress::Observer;
 use crate::system::{ContactPair, Coupling, System};
 use faer::Mat;
 use std::cell::RefCell;
@@ -30,6 +33,8 @@ use std::sync::Arc;
 const TOLERANCE: f64 = 1e-9;
 /// The most iterations of a linear solution.
 const MOST_ITERATIONS: usize = 300;
+/// A linear solution that leaves more than this part of its right-hand side has none.
+const UNBALANCED: f64 = 0.5;
 /// A solution of more iterations has A made anew with the springs of its state.
 const SLOW: usize = 40;
 /// d of a point without load, as a part of that of a closed one.
@@ -126,6 +131,7 @@ pub(super) struct WholeProblem<'a> {
     stiffness: &'a SparseMatrix,
     structure: &'a Assembled<'a>,
     max_iterations: usize,
+    observer: &'a dyn Observer,
     /// Where known, a state to begin with.
     known: Option<&'a State>,
     /// The factors at hand, those of the state that was met last.
@@ -133,16 +139,16 @@ pub(super) struct WholeProblem<'a> {
 }
 
 impl<'a> WholeProblem<'a> {
-    /// On `structure` with the stiffness `stiffness`, solved in up to `max_iterations`, from a state that is known.
+    /// On `structure` with the stiffness `stiffness`, solved in up to `max_iterations` watched by `observer`, from a state that is known.
     pub(super) fn new(
         (pairs, load): (&'a [ContactPair], &'a [f64]),
         (structure, stiffness): (&'a Assembled<'a>, &'a SparseMatrix),
-        max_iterations: usize,
+        (max_iterations, observer): (usize, &'a dyn Observer),
         known: Option<&'a State>,
     ) -> Self {
         let latest = RefCell::new(Arc::clone(&structure.closed));
         let contact = PointLaws::new(pairs);
-        WholeProblem { contact, load, stiffness, structure, max_iterations, known, latest }
+        WholeProblem { contact, load, stiffness, structure, max_iterations, observer, known, latest }
     }
 
     /// φ f − K u − r_c.
@@ -240,7 +246,9 @@ impl<'a> WholeProblem<'a> {
             *self.latest.borrow_mut() = own;
             found = solved(MOST_ITERATIONS);
         }
-        found.x.iter().all(|v| v.is_finite()).then(|| self.change(state, found.x))
+        // What cannot be balanced by any motion, such as friction at its limit on a body that nothing else holds, stays in the residual.
+        let balanced = found.residual <= UNBALANCED && found.x.iter().all(|v| v.is_finite());
+        balanced.then(|| self.change(state, found.x))
     }
 
     /// The length of the step that the preconditioner alone gives for the residual of a state \[m\].
@@ -258,6 +266,14 @@ impl<'a> WholeProblem<'a> {
 
 impl Newton for WholeProblem<'_> {
     type Stage = State;
+
+    fn contact(&self) -> &PointLaws<'_> {
+        &self.contact
+    }
+
+    fn state(&self, stage: &State) -> (Vec<PointState>, Vec<f64>) {
+        (states(self.contact.pairs, &stage.penetration, &stage.displacement), stage.approach.clone())
+    }
 
     fn starts(&self, fraction: Fraction) -> Vec<State> {
         let known = self.known.filter(|_| fraction == 1.0).cloned();
@@ -279,21 +295,27 @@ impl Newton for WholeProblem<'_> {
 
     /// Damped Newton: a step is taken where the simplified step after it is shorter than the one before. It ends when neither
     /// the lengths nor the forces change any more, or what changes is rounding.
-    fn solve(&self, mut state: State, fraction: Fraction) -> std::result::Result<(State, usize), String> {
+    fn solve(
+        &self,
+        mut state: State,
+        fraction: Fraction,
+    ) -> std::result::Result<(State, usize), Lost<State>> {
+        let mut watch = Watch::new(self.observer);
         let contact = &self.contact;
         let (mut length, mut last) = (f64::INFINITY, f64::INFINITY);
         for iteration in 1..=self.max_iterations {
             let laws = contact.respond(&state.penetration, &state.displacement, fraction);
+            let lost = |why: String| Err(Lost { why, at: state.clone() });
             if !are_finite(&laws) {
-                return Err(format!("at iteration {iteration} a force of the contact is not finite"));
+                return lost(format!("at iteration {iteration} a force of the contact is not finite"));
             }
             let rest = self.rest(&state.displacement, &laws, fraction);
             let Some(step) = self.step(&state, rest, &laws, fraction) else {
-                return Err(format!("at iteration {iteration} the contact leaves a motion free"));
+                return lost(format!("at iteration {iteration} the contact leaves a motion free"));
             };
             length = self.length(&step);
             if !length.is_finite() {
-                return Err(format!("at iteration {iteration} the step is not finite"));
+                return lost(format!("at iteration {iteration} the step is not finite"));
             }
             let scale = contact.scale(&state.penetration, &state.approach);
             let (change, largest) = (force_change(&laws, &step.penetration), largest_force(&laws));
@@ -302,6 +324,9 @@ impl Newton for WholeProblem<'_> {
             if settled || rounding {
                 state.add(1.0, &step);
                 return Ok((state, iteration));
+            }
+            if let Err(why) = watch.step(iteration, length, &laws) {
+                return lost(why);
             }
             last = length;
             let before = self.distance(&state, fraction);
@@ -316,7 +341,8 @@ impl Newton for WholeProblem<'_> {
                 damping *= 0.5;
             }
         }
-        Err(format!("after {} iterations the Newton step is still {length:.1e} m", self.max_iterations))
+        let why = format!("after {} iterations the Newton step is still {length:.1e} m", self.max_iterations);
+        Err(Lost { why, at: state })
     }
 }
 

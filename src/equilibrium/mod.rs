@@ -11,6 +11,7 @@ mod linear;
 mod load_steps;
 mod nearby;
 mod newton;
+mod no_state;
 mod point_laws;
 #[cfg(test)]
 pub(crate) mod samples;

@@ -58,7 +58,7 @@ impl<'a> Nearby<'a> {
         const STEPS: usize = 40;
         const SETTLED: f64 = 1e-15;
         const ACCEPTED: f64 = 1e-11;
-        let problem = self.solver.problem(&other.pairs, &other.load, &SteadyOptions::default());
+        let problem = self.solver.problem(&other.pairs, &other.load, &SteadyOptions::default(), &());
         let mut state = State::of(self.steady);
         let mut last = f64::INFINITY;
         for iterations in 1..=STEPS {

@@ -1,9 +1,12 @@
 //! Newton's method on the condensed contact problem.
 
+use super::PointState;
+use super::balance::states;
 use super::condensed::Condensed;
 use super::linear::directions;
-use super::load_steps::Newton;
+use super::load_steps::{Lost, Newton, Watch};
 use super::point_laws::{Fraction, Law, PointLaws, State, are_finite, force_change, largest_force, norm};
+use crate::progress::Observer;
 use crate::system::ContactPair;
 use faer::Mat;
 use faer::linalg::solvers::Solve;
@@ -20,6 +23,7 @@ pub(super) struct ContactProblem<'a> {
     condensed: &'a Condensed,
     unloaded: Vec<f64>,
     max_iterations: usize,
+    observer: &'a dyn Observer,
 }
 
 /// δ of every point and a of every pair \[m\].
@@ -32,6 +36,14 @@ pub(super) struct Closure {
 impl Newton for ContactProblem<'_> {
     type Stage = Closure;
 
+    fn contact(&self) -> &PointLaws<'_> {
+        &self.contact
+    }
+
+    fn state(&self, stage: &Closure) -> (Vec<PointState>, Vec<f64>) {
+        (states(self.contact.pairs, &stage.penetration, &[]), stage.approach.clone())
+    }
+
     fn starts(&self, fraction: Fraction) -> Vec<Closure> {
         let starts = self.contact.starts(&self.unloaded, fraction);
         starts.into_iter().map(|(penetration, approach)| Closure { penetration, approach }).collect()
@@ -43,25 +55,33 @@ impl Newton for ContactProblem<'_> {
         &self,
         Closure { mut penetration, mut approach }: Closure,
         fraction: Fraction,
-    ) -> std::result::Result<(Closure, usize), String> {
+    ) -> std::result::Result<(Closure, usize), Lost<Closure>> {
+        let mut watch = Watch::new(self.observer);
         let (contact, n) = (&self.contact, self.contact.points.len());
         let mut length = f64::INFINITY;
         let measured = |step: &[f64]| contact.length(&step[..n], &contact.approaches(&step[n..]));
         for iteration in 1..=self.max_iterations {
             let laws = contact.respond(&penetration, &[], fraction);
+            let lost = |why: String| {
+                let at = Closure { penetration: penetration.clone(), approach: approach.clone() };
+                Err(Lost { why, at })
+            };
             if !are_finite(&laws) {
-                return Err(format!("at iteration {iteration} a force of the contact is not finite"));
+                return lost(format!("at iteration {iteration} a force of the contact is not finite"));
             }
             let Some(factor) = ScaledLu::new(self.jacobian(&laws), n) else {
-                return Err(format!("at iteration {iteration} the contact leaves a motion free"));
+                return lost(format!("at iteration {iteration} the contact leaves a motion free"));
             };
             let step = factor.solve(&self.residual(&penetration, &approach, &laws, fraction));
             length = measured(&step);
             if !length.is_finite() {
-                return Err(format!("at iteration {iteration} the step is not finite"));
+                return lost(format!("at iteration {iteration} the step is not finite"));
             }
             let settled = length <= 1e-11 * contact.scale(&penetration, &approach)
                 && force_change(&laws, &step) <= 1e-9 * largest_force(&laws);
+            if !settled && let Err(why) = watch.step(iteration, length, &laws) {
+                return lost(why);
+            }
             let mut damping = 1.0;
             loop {
                 let (next, next_approach) = self.moved(&penetration, &approach, &step, -damping);
@@ -77,20 +97,21 @@ impl Newton for ContactProblem<'_> {
                 damping *= 0.5;
             }
         }
-        Err(format!("after {} iterations the Newton step is still {length:.1e} m", self.max_iterations))
+        let why = format!("after {} iterations the Newton step is still {length:.1e} m", self.max_iterations);
+        Err(Lost { why, at: Closure { penetration, approach } })
     }
 }
 
 impl<'a> ContactProblem<'a> {
-    /// Of pairs and a load on the structure of `condensed`, solved in up to `max_iterations`.
+    /// Of pairs and a load on the structure of `condensed`, solved in up to `max_iterations` watched by `observer`.
     pub(super) fn new(
-        pairs: &'a [ContactPair],
-        load: &'a [f64],
+        (pairs, load): (&'a [ContactPair], &'a [f64]),
         condensed: &'a Condensed,
         max_iterations: usize,
+        observer: &'a dyn Observer,
     ) -> Self {
         let unloaded = condensed.unloaded(load);
-        ContactProblem { contact: PointLaws::new(pairs), load, condensed, unloaded, max_iterations }
+        ContactProblem { contact: PointLaws::new(pairs), load, condensed, unloaded, max_iterations, observer }
     }
 
     /// e − e₀ − S (d e − N) − T₁F₁ − T₂F₂, then ΣN − L.
@@ -151,8 +172,8 @@ impl<'a> ContactProblem<'a> {
         (next, approach.iter().zip(change).map(|(a, s)| a + factor * s).collect())
     }
 
-    /// The whole state of a solution: u = A⁻¹ (f + Σ g (d e − N) + t₁F₁ + t₂F₂).
-    pub(super) fn state(&self, Closure { penetration, approach }: Closure) -> State {
+    /// A solution on the degrees of freedom: u = A⁻¹ (f + Σ g (d e − N) + t₁F₁ + t₂F₂).
+    pub(super) fn whole(&self, Closure { penetration, approach }: Closure) -> State {
         let laws = self.contact.respond(&penetration, &[], 1.0);
         let motions = self.contact.motions(&penetration, &approach);
         let mut rhs = self.load.to_vec();

@@ -4,12 +4,13 @@ use super::assembled::{Assembled, WholeProblem};
 use super::balance::{residual, states};
 use super::condensed::Condensed;
 use super::conditions::{check_contact, check_input};
-use super::load_steps::solve_accepted;
+use super::load_steps::{Newton, solve_accepted};
 use super::newton::ContactProblem;
 use super::point_laws::{PointLaws, State, norm};
 use super::{PointState, SteadyOptions, SteadySliding};
 use crate::error::Result;
 use crate::linalg::SparseMatrix;
+use crate::progress::Observer;
 use crate::system::{ContactPair, Coupling, System};
 use std::borrow::Cow;
 
@@ -63,16 +64,17 @@ impl<'a> SteadySolver<'a> {
         pairs: &'s [ContactPair],
         load: &'s [f64],
         options: &SteadyOptions,
+        observer: &'s dyn Observer,
     ) -> Problem<'s> {
         let most = options.max_iterations;
         match &self.method {
             Method::Condensed(condensed) => {
-                Problem::Condensed(ContactProblem::new(pairs, load, condensed, most))
+                Problem::Condensed(ContactProblem::new((pairs, load), condensed, most, observer))
             }
             Method::Assembled(assembled) => Problem::Assembled(WholeProblem::new(
                 (pairs, load),
                 (assembled, &self.stiffness),
-                most,
+                (most, observer),
                 self.known.as_ref(),
             )),
         }
@@ -82,18 +84,26 @@ impl<'a> SteadySolver<'a> {
     ///
     /// # Errors
     /// As [`super::solve_steady`].
-    pub fn solve(&self, system: &System, options: &SteadyOptions) -> Result<SteadySliding> {
-        let problem = self.problem(&system.pairs, &system.load, options);
+    pub fn solve(
+        &self,
+        system: &System,
+        options: &SteadyOptions,
+        observer: &dyn Observer,
+    ) -> Result<SteadySliding> {
+        let problem = self.problem(&system.pairs, &system.load, options, observer);
         let mut refused = None;
         let mut accepted = |state: State, iterations: usize| {
             let (state, error) = refine(system, &self.stiffness, &problem, state);
+            // NaN is none.
+            if error.is_nan() || error > ACCEPTED {
+                return None;
+            }
             let points = states(&system.pairs, &state.penetration, &state.displacement);
             if let Err(fault) = check_contact(&system.pairs, &state.approach, &points, options) {
                 refused = Some(fault);
                 return None;
             }
-            // NaN is none.
-            (error <= ACCEPTED).then(|| SteadySliding {
+            Some(SteadySliding {
                 residual: residual(system, &self.stiffness, &state.displacement, &points).1,
                 displacement: state.displacement,
                 approach: state.approach,
@@ -103,7 +113,7 @@ impl<'a> SteadySolver<'a> {
         };
         let found = match &problem {
             Problem::Condensed(contact) => {
-                solve_accepted(contact, |stage, iterations| accepted(contact.state(stage), iterations))
+                solve_accepted(contact, |stage, iterations| accepted(contact.whole(stage), iterations))
             }
             Problem::Assembled(contact) => solve_accepted(contact, accepted),
         };
@@ -125,13 +135,9 @@ impl<'a> SteadySolver<'a> {
         options: &SteadyOptions,
     ) -> Result<Vec<PointState>> {
         check_input(pairs, load, self.stiffness.nrows())?;
-        let (points, approach) = match &self.problem(pairs, load, options) {
-            Problem::Condensed(contact) => solve_accepted(contact, |stage, _| {
-                Some((states(pairs, &stage.penetration, &[]), stage.approach))
-            }),
-            Problem::Assembled(contact) => solve_accepted(contact, |state, _| {
-                Some((states(pairs, &state.penetration, &state.displacement), state.approach))
-            }),
+        let (points, approach) = match &self.problem(pairs, load, options, &()) {
+            Problem::Condensed(contact) => solve_accepted(contact, |stage, _| Some(contact.state(&stage))),
+            Problem::Assembled(contact) => solve_accepted(contact, |state, _| Some(contact.state(&state))),
         }?;
         check_contact(pairs, &approach, &points, options)?;
         Ok(points)
@@ -212,7 +218,7 @@ mod tests {
             let system = random_system(40 + 9 * seed as usize, 2 + seed as usize, load, 60 + seed);
             let condensed = solve_steady(&system, &SteadyOptions::default(), &()).unwrap();
             let solver = assembled(&system);
-            let whole = solver.solve(&system, &SteadyOptions::default()).unwrap();
+            let whole = solver.solve(&system, &SteadyOptions::default(), &()).unwrap();
             let near = |a: &SteadySliding, b: &SteadySliding| {
                 let largest = |x: &[f64]| x.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
                 let apart =
@@ -232,7 +238,7 @@ mod tests {
                 pair.sliding_velocity *= 0.7;
             }
             let exact = solve_steady(&other, &SteadyOptions::default(), &()).unwrap();
-            near(&exact, &solver.solve(&other, &SteadyOptions::default()).unwrap());
+            near(&exact, &solver.solve(&other, &SteadyOptions::default(), &()).unwrap());
             let points = solver.points(&other.pairs, &other.load, &SteadyOptions::default()).unwrap();
             for (found, exact) in points.iter().zip(&exact.points) {
                 let size = exact.forces.normal.abs().max(1e-3 * load);
@@ -248,7 +254,7 @@ mod tests {
         let stiffness = Cow::Borrowed(&*system.structure.stiffness);
         let solver = SteadySolver::new(&system, stiffness).unwrap();
         assert!(matches!(solver.method, Method::Assembled(_)));
-        let steady = solver.solve(&system, &SteadyOptions::default()).unwrap();
+        let steady = solver.solve(&system, &SteadyOptions::default(), &()).unwrap();
         let carried: f64 = steady.points.iter().map(|point| point.forces.normal).sum();
         assert!(within(steady.residual, 1e-13, RoundOff) && within((carried - 40.0).abs(), 1e-9, Tolerance));
         assert!(steady.points.iter().any(|point| !point.closed()));

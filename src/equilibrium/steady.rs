@@ -68,8 +68,7 @@ fn solve_prestressed(
 ) -> Result<SteadySliding> {
     const ITERATIONS: usize = 40;
     let k = &system.structure.stiffness;
-    let mut steady = SteadySolver::new(system, Cow::Borrowed(k))?.solve(system, options)?;
-    observer.advance(1);
+    let mut steady = SteadySolver::new(system, Cow::Borrowed(k))?.solve(system, options, observer)?;
     if system.prestress.is_none() {
         return Ok(steady);
     }
@@ -78,8 +77,7 @@ fn solve_prestressed(
     for _ in 0..ITERATIONS {
         let k = tangent_stiffness(system, &steady.displacement)?;
         let solver = SteadySolver::new(system, k).map_err(buckled)?;
-        let next = solver.solve(system, options)?;
-        observer.advance(1);
+        let next = solver.solve(system, options, observer)?;
         iterations += next.iterations;
         let difference: Vec<f64> =
             next.displacement.iter().zip(&steady.displacement).map(|(a, b)| a - b).collect();

@@ -1,3 +1,4 @@
+mod no_state;
 mod sticking;
 
 use super::samples::*;

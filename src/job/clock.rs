@@ -47,6 +47,10 @@ impl Observer for TimedObserver<'_> {
         self.observer.advance(steps);
     }
 
+    fn status(&self, words: &str) {
+        self.observer.status(words);
+    }
+
     fn end(&self) {
         self.observer.end();
         if let (Ok(mut open), Ok(mut phases)) = (self.open.lock(), self.phases.lock())

@@ -10,6 +10,10 @@ pub trait Observer: Sync {
     fn advance(&self, steps: u64) {
         let _ = steps;
     }
+    /// How far the current stage is, in a few words, where its length is not known.
+    fn status(&self, words: &str) {
+        let _ = words;
+    }
     /// The current stage is over.
     fn end(&self) {}
     /// A sentence that the user should see now.
