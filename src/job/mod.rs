@@ -65,6 +65,7 @@ mod singular;
 mod sink;
 mod sound;
 mod states;
+mod steady_warnings;
 mod studies;
 mod study_solver;
 mod table;

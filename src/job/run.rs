@@ -8,6 +8,7 @@ use super::modes::{check_damping_frequencies, real_modes_below};
 use super::operating_point::OperatingPoint;
 use super::prepared::Prepared;
 use super::sink::{ResultSink, ResultStage};
+use super::steady_warnings;
 use crate::case::StiffnessPer;
 use crate::equilibrium::{self, SteadySliding};
 use crate::error::Result;
@@ -96,6 +97,7 @@ impl<'a, 'k> Run<'a, 'k> {
         let steady = Arc::new(state.clone());
         self.steady = Some(steady.clone());
         if !prepared.system.pairs.is_empty() {
+            self.results.warnings.extend(steady_warnings::warnings(prepared, &state));
             self.found(steady_result(prepared, state))?;
         }
         Ok(steady)

@@ -3,6 +3,7 @@
 //!
 //! Each warning gives what was found, what is expected and what to do.
 
+mod contact;
 mod frequency;
 mod integration;
 mod material;
@@ -19,9 +20,10 @@ pub fn warnings(prepared: &Prepared) -> Vec<Fault> {
     let mut all =
         [material::warnings(prepared.case), size::warnings(prepared), thickness::warnings(&prepared.model)]
             .concat();
-    // Waves of a wrong material or size say nothing of the mesh.
+    // A wrong material or size says nothing of contact and mesh.
     if all.is_empty() {
-        all = [theory::warnings(prepared), resolution::warnings(prepared)].concat();
+        all = [contact::warnings(prepared), theory::warnings(prepared), resolution::warnings(prepared)]
+            .concat();
     }
     all.extend(integration::warnings(&prepared.model));
     prepared.case.places.located(all)

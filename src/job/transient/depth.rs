@@ -1,10 +1,8 @@
 //! How deep contacts are pressed in motion.
 
 use crate::job::prepared::Prepared;
+use crate::job::steady_warnings::SMALL_PENETRATION;
 use crate::transient::{Checkpoint, Marched, TransientModel};
-
-/// The penetration, as a part of the thinnest part, up to which it is small beside the bodies.
-const SMALL: f64 = 0.1;
 
 /// The deepest penetrations of a run.
 pub(super) struct Depths {
@@ -49,11 +47,11 @@ impl Depths {
 
     /// Contacts that are pressed deeper than the model can mean.
     pub(super) fn warnings(&self) -> Vec<String> {
-        let deep = self.pairs.iter().filter(|(.., deepest)| *deepest > SMALL * self.thinnest);
+        let deep = self.pairs.iter().filter(|(.., deepest)| *deepest > SMALL_PENETRATION * self.thinnest);
         let words = |(name, _, deepest): &(String, _, f64)| {
             format!(
                 "In motion the contact {name} is pressed {:.3} mm deep, {:.2} of the thinnest part, {:.3} mm: the faces are where they are \
-                 without deformation, which holds up to about {SMALL}. Amplitudes of this run have no meaning, only its beginning has; or \
+                 without deformation, which holds up to about {SMALL_PENETRATION}. Amplitudes of this run have no meaning, only its beginning has; or \
                  the contact is too soft.",
                 1e3 * deepest,
                 deepest / self.thinnest,
