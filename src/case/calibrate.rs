@@ -32,9 +32,9 @@ declare! {
         /// Predicts each measured mode and each response from all others.
         pub leave_one_out: bool = key::flag(true),
         /// Draws of measured sets that mean nothing, for the probability that frequencies match by chance; 0 for none.
-        pub chance_draws: usize = key::whole().check("at most a million", |n| *n <= 1_000_000).or(1000),
+        pub chance_draws: usize = key::whole(0..=1_000_000).or(1000),
         /// Fits of synthetic data, for the coverage of the intervals; 0 for none.
-        pub trials: usize = key::whole().check("at most a million", |n| *n <= 1_000_000).or(0),
+        pub trials: usize = key::whole(0..=1_000_000).or(0),
         /// Scalars to be found, by name.
         pub parameter: BTreeMap<String, VariedParameter> = key::named(),
     }

@@ -21,7 +21,7 @@ declare! {
         /// Direction in which the body moves into the ground; only for a contact with the ground.
         pub into: Option<[f64; 3]> = key::direction().optional().invalidates(Invalidates::Interface),
         /// Contact points across the thickness of a rim: 2, one at each edge, or 1, in the middle.
-        pub points_across: usize = key::count().check("1 or 2", |n| *n <= 2).or(2),
+        pub points_across: usize = key::whole(1..=2).or(2),
         /// Points with a larger initial gap are left out \[m\].
         pub reach: f64 = key::quantity(LENGTH)
             .positive()

@@ -18,7 +18,7 @@ declare! {
         /// Its last value.
         pub to: f64 = key::quantity_of_scalar().expecting("the last value"),
         /// How many values.
-        pub points: usize = key::count().check("from 2 to a million", |n| (2..=POINTS).contains(n)).or(41),
+        pub points: usize = key::whole(2..=POINTS).or(41),
         /// Equal ratios instead of equal steps.
         pub log: bool = key::flag(false),
     }

@@ -2,6 +2,7 @@
 
 use super::LengthUnit;
 use crate::measured::Quantity;
+use crate::schema::raw::MOST;
 use crate::schema::units::{FREQUENCY, LENGTH, NUMBER};
 use crate::schema::{Report, declare, dotted, key};
 use std::collections::BTreeMap;
@@ -42,7 +43,7 @@ declare! {
             .check("two frequencies above zero, the lower one first", |[low, high]| 0.0 < *low && low < high)
             .optional(),
         /// The most lines of a response that a calibration takes.
-        pub response_lines: Option<usize> = key::whole().check("at least 2", |n| *n >= 2).optional(),
+        pub response_lines: Option<usize> = key::whole(2..=MOST).optional(),
         /// Where the figures come from.
         pub source: String = key::text(),
         /// Points of the test by number, in its own frame \[m\], where the file does not have them.

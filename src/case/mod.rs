@@ -51,8 +51,8 @@ pub use rotation::Rotation;
 pub use sound::{AirChoice, Microphone, ON_AXIS, SoundAnalysis};
 pub use test_file::read_test;
 pub use transient::{
-    Course, Disturbance, HoldChoice, ModelChoice, Probe, PushedRegion, SchemeChoice, Slide, StartChoice,
-    TransientAnalysis,
+    CONTACT_TOLERANCE, Course, Disturbance, HoldChoice, ModelChoice, Probe, PushedRegion, SchemeChoice,
+    Slide, StartChoice, TransientAnalysis,
 };
 pub use uncertainty::UncertaintyAnalysis;
 pub use varied::VariedParameter;

@@ -1,11 +1,14 @@
 //! `[transient]`: motion in time.
 
 use super::sound::SoundAnalysis;
+use crate::schema::raw::MOST;
 use crate::schema::units::{ANGLE, FORCE, FREQUENCY, LENGTH, NUMBER, TIME};
 use crate::schema::{Report, choices, declare, key, variants};
 use std::collections::BTreeMap;
 use std::ops::Bound;
 
+/// `contact_tolerance` where it is not given.
+pub const CONTACT_TOLERANCE: f64 = 0.1;
 /// Steps of a run.
 const MOST_STEPS: f64 = 1e8;
 /// The shortest time step with sound \[s\]: one of 200 to a period of 50 kHz, far beyond what is heard.
@@ -29,14 +32,14 @@ declare! {
         /// How many steps of a reduced model are compared with the full one; by itself only one of up to 500 contact points is.
         pub compare_steps: Option<usize> = {
             let full = *model == Some(ModelChoice::Full);
-            key::whole()
+            key::whole(0..=MOST)
                 .optional()
                 .check("no such key beside the full model", move |steps| !full || steps.is_none())
                 .or_by("100 with a reduced model of up to 500 contact points", None)
         },
         /// The relative error of the deflections under contact forces up to which a model of more than 500 contact points is reduced.
         pub contact_tolerance: f64 =
-            key::quantity(NUMBER).within(Bound::Excluded(0.0), Bound::Excluded(1.0)).or(0.1),
+            key::quantity(NUMBER).within(Bound::Excluded(0.0), Bound::Excluded(1.0)).or(CONTACT_TOLERANCE),
         /// Newton's method on the whole instead of the condensed step, to compare.
         pub full_newton: bool = key::flag(false),
         /// How often the motion of all nodes is written, to the nearest time step \[s\]; never when absent.

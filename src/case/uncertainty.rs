@@ -2,6 +2,7 @@
 
 use super::varied::check_parameters;
 use super::{Case, Invalidates, Parameter, VariedParameter};
+use crate::schema::raw::MOST;
 use crate::schema::units::NUMBER;
 use crate::schema::{Report, declare, dotted, key};
 use crate::uncertainty::{Distribution, Sampling};
@@ -15,13 +16,11 @@ declare! {
     /// Complex eigenvalues of samples of uncertain scalars: how probable it is that a mode grows, and which scalar decides.
     pub struct UncertaintyAnalysis {
         /// How many samples.
-        pub samples: usize = key::count()
-            .check("from 10 to a million", |n| (SAMPLES[0]..=SAMPLES[1]).contains(n))
-            .or(1000),
+        pub samples: usize = key::whole(SAMPLES[0]..=SAMPLES[1]).or(1000),
         /// How they are drawn.
         pub sampling: Sampling = key::choice().or(Sampling::LatinHypercube),
         /// The same seed gives the same samples.
-        pub seed: usize = key::whole().or(1),
+        pub seed: usize = key::whole(0..=MOST).or(1),
         /// How often the interval of a probability is to contain it.
         pub confidence: f64 =
             key::quantity(NUMBER).within(Bound::Included(0.5), Bound::Included(0.9999)).or(0.95),

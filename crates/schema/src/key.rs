@@ -4,11 +4,12 @@ pub use super::keys::is_name;
 pub use super::table::{flat, is_file_name, named, table, values};
 
 use super::invalidates::{Derivative, Invalidates};
+use super::raw::MOST;
 use super::units::Dimension;
 use super::value::{Form, Units, Value};
 use super::{Key, Kind, Slot, Visitor};
 use std::borrow::Cow;
-use std::ops::{Bound, RangeBounds};
+use std::ops::{Bound, RangeBounds, RangeInclusive};
 use toml::de::DeValue;
 
 /// Declaration of a key beside its type.
@@ -125,15 +126,21 @@ pub fn flag(default: bool) -> Field<bool> {
 
 /// A whole number from one to a billion.
 pub fn count() -> Field<usize> {
-    let expected = "a whole number from 1 to a billion";
-    let mut count = field(expected, Units::none()).check(expected, |n| *n > 0);
-    count.about.bounds.0 = Bound::Included(1.0);
-    count
+    whole(1..=MOST)
 }
 
-/// A whole number from zero to a billion.
-pub fn whole() -> Field<usize> {
-    field("a whole number from 0 to a billion", Units::none())
+/// A whole number of this range, a billion at most.
+pub fn whole(range: RangeInclusive<usize>) -> Field<usize> {
+    let [low, high] = [range.start(), range.end()].map(|n| match *n {
+        MOST => "a billion".into(),
+        1_000_000 => "a million".into(),
+        n => n.to_string(),
+    });
+    let expected = format!("a whole number from {low} to {high}");
+    let mut whole = field(expected.clone(), Units::none());
+    let end = if *range.end() == MOST { Bound::Unbounded } else { Bound::Included(*range.end() as f64) };
+    whole.about.bounds = (Bound::Included(*range.start() as f64), end);
+    whole.check(expected, move |n| range.contains(n))
 }
 
 /// A value of another type, with what is expected in words.

@@ -8,7 +8,7 @@ use toml::de::DeValue;
 /// The largest size of a quantity in SI units; the least that is not zero is one over it. Products of several stay finite.
 pub const LARGEST: f64 = 1e60;
 /// The largest whole number.
-pub(super) const MOST: usize = 1_000_000_000;
+pub const MOST: usize = 1_000_000_000;
 
 /// A number, or a string with a unit of the dimension; of any dimension where none is given.
 pub fn quantity_of(value: &DeValue, dimension: Option<Dimension>) -> Result<f64, String> {
