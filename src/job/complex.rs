@@ -124,6 +124,7 @@ pub fn complex_result<'a>(
         ),
         false => None,
     };
+    let case = prepared.case;
     let labels = labels(&identify(prepared, &real, (&prepared.model, &prepared.assembled)), &real);
     let participation = modes
         .modes
@@ -144,6 +145,7 @@ pub fn complex_result<'a>(
         shares: None,
         without_split: Vec::new(),
         measured_squeal_hz: cea.measured_squeal.iter().map(|f| (*f, cea.measured_source.clone())).collect(),
+        modal_damping_below_hz: (case.damping.modal_ratio > 0.0).then(|| damped_below(case, cea)),
         band_hz: band,
         certificate,
         confirmation,

@@ -206,11 +206,12 @@ pub fn identify(prepared: &Prepared, modes: &RealModes, of: (&Model, &Assembled)
     moving_part.into_iter().zip(names).collect()
 }
 
-/// A few words on each real mode: the part that moves most and, for a disc, (nodal diameters, circles).
+/// A few words on each real mode: the part that moves most and, for a disc, (nodal diameters, circles); rigid-body modes by their number.
 pub fn labels(identities: &[Identity], modes: &RealModes) -> Vec<String> {
     let label = |(k, (part, name)): (usize, &Identity)| {
         let part = part.as_deref().unwrap_or("mode");
         match name {
+            _ if k < modes.rigid_bodies => format!("{part} rigid body {}", k + 1),
             Some(n) => format!("{part} ({}, {})", n.nodal_diameters, n.nodal_circles),
             None => format!("{part} {} Hz", hertz(modes.frequency_hz(k), 0)),
         }

@@ -29,14 +29,22 @@ fn table(result: &ComplexResult) -> ReportTable {
         row.marked = matches!(mode.verdict(), Verdict::Unstable | Verdict::Inaccurate);
     }
     let mut table = table.without_columns(idle);
-    table.notes.push("σ: growth rate; ζ = −σ/|λ|: damping ratio, negative when unstable.".into());
     let largest = |of: fn(&ComplexMode) -> f64| result.modes.modes.iter().map(of).fold(f64::NAN, f64::max);
-    table.notes.push(format!(
-        "Largest backward error η {}, eigenvalue error |Δλ|/|λ| {}, condition number κ {}.",
-        power(largest(|mode| mode.backward_error)),
-        power(largest(|mode| mode.eigenvalue_error)),
-        significant(largest(|mode| mode.condition), 2)
-    ));
+    if !table.rows.is_empty() {
+        table.notes.push("σ: growth rate; ζ = −σ/|λ|: damping ratio, negative when unstable.".into());
+        table.notes.push(format!(
+            "Largest backward error η {}, eigenvalue error |Δλ|/|λ| {}, condition number κ {}.",
+            power(largest(|mode| mode.backward_error)),
+            power(largest(|mode| mode.eigenvalue_error)),
+            significant(largest(|mode| mode.condition), 2)
+        ));
+        table.notes.extend(result.modal_damping_below_hz.map(|hz| {
+            format!(
+                "Modal damping: of the real modes up to {} Hz (`damping.modal_below`); modes above have none, and σ depends on that limit as far as they take part.",
+                given(hz)
+            )
+        }));
+    }
     table.notes.extend(result.confirmation.as_ref().map(second_method));
     table
 }
@@ -52,7 +60,7 @@ fn proof(result: &ComplexResult) -> ReportTable {
 
 /// What is said of modes whose growth vanishes without the split of double modes.
 const BY_MESH: &str = "unstable only by the asymmetry of the mesh";
-const WITHOUT_SPLIT: &str = "No mesh split: σ, to first order, if the mesh did not part the double modes of the disc, a body of revolution";
+const WITHOUT_SPLIT: &str = "No mesh split: σ, to first order, if the mesh did not part the double modes of the disc, a body of revolution; where it equals σ, the mesh has no part in the growth";
 
 /// The unstable modes, the strongest growth first, with the nearest measured squeal.
 fn unstable(result: &ComplexResult) -> ReportTable {

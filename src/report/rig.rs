@@ -167,7 +167,7 @@ const NAMED: usize = 6;
 /// A load below this is none \[N\].
 const LEAST: f64 = 1e-12;
 
-/// Load and sliding velocity of every pair, drawn just outside the model; none of what is zero.
+/// Load and sliding velocity of every pair, drawn just outside the model; none of what is zero, or has no one direction.
 fn arrows(geometry: &Geometry, steady: &SteadyResult) -> Vec<Arrow> {
     let mut arrows = vec![];
     let size = size(geometry);
@@ -180,14 +180,14 @@ fn arrows(geometry: &Geometry, steady: &SteadyResult) -> Vec<Arrow> {
         }
         let centre = all.iter().fold([0.0; 3], |sum, p| along(sum, 1.0 / all.len() as f64, *p));
         let of = if several { format!(" ({name})") } else { String::new() };
-        if *load > LEAST {
+        if *load > LEAST && *press != [0.0; 3] {
             let above = extent(geometry, press.map(|c| -c), centre);
             let label = format!("load {} N{of}", given(rounded(*load, 4)));
             let (tail, head) =
                 (along(centre, -above - 0.24 * size, *press), along(centre, -above - 0.03 * size, *press));
             arrows.push(Arrow { tail, head, label, colour: ALARM_TEXT });
         }
-        if *velocity != 0.0 {
+        if *velocity != 0.0 && *slide != [0.0; 3] {
             let direction = if *velocity < 0.0 { slide.map(|c| -c) } else { *slide };
             let ahead = extent(geometry, direction, centre);
             let label = format!("sliding {} m/s{of}", given(rounded(velocity.abs(), 4)));

@@ -64,10 +64,15 @@ impl ReportSection {
         self
     }
 
-    /// With tables.
+    /// With tables; of one without rows only what is written below it.
     #[must_use]
     pub(super) fn tables(mut self, display: Display, tables: impl IntoIterator<Item = ReportTable>) -> Self {
-        self.items.extend(tables.into_iter().map(|table| Item::Table(table, display)));
+        for table in tables {
+            match table.rows.is_empty() {
+                true => self.items.extend(table.notes.into_iter().map(Item::Words)),
+                false => self.items.push(Item::Table(table, display)),
+            }
+        }
         self
     }
 
@@ -108,6 +113,15 @@ pub(super) fn findings(sections: &[ReportSection]) -> Vec<(usize, &Finding)> {
 mod tests {
     use super::*;
     use crate::report::finding::FindingClass;
+
+    #[test]
+    fn a_table_without_rows_is_left_out() {
+        let empty = ReportTable { notes: vec!["none".into()], ..ReportTable::new("x", &["a"]) };
+        let mut full = ReportTable::new("y", &["a"]);
+        full.row(vec!["1".into()], false);
+        let section = ReportSection::new("x").tables(Display::Titled, [empty, full]);
+        assert!(matches!(&section.items[..], [Item::Words(words), Item::Table(..)] if words == "none"));
+    }
 
     #[test]
     fn the_most_urgent_comes_first_and_equals_keep_their_order() {

@@ -33,6 +33,8 @@ pub struct ComplexResult {
     pub without_split: Vec<Option<f64>>,
     /// Frequencies that measurements show squealing \[Hz\], with their source; may be empty.
     pub measured_squeal_hz: Vec<(f64, String)>,
+    /// The frequency \[Hz\] up to which real modes have the modal damping of the whole; `None` where there is none.
+    pub modal_damping_below_hz: Option<f64>,
     /// Frequency band of the analysis \[Hz\].
     pub band_hz: [f64; 2],
     /// The count of the unstable eigenvalues, where there is one.
@@ -256,6 +258,12 @@ impl Describe for ComplexResult {
             .value("not_accurate", "1", "modes that are not accurate", count(Verdict::Inaccurate))
             .value("subspace_dimension", "1", "dimension of the subspace", self.modes.subspace_dimension)
             .value("refinements", "1", "steps of refinement", self.modes.refinements)
+            .value(
+                "modal_damping_below_hz",
+                "Hz",
+                "frequency up to which real modes have the modal damping of the whole",
+                self.modal_damping_below_hz,
+            )
             .table(self.with_vectors())
             .optional("certificate", self.certificate.as_ref().map(certificate))
             .optional("second_method", self.confirmation.as_ref().map(second_method))

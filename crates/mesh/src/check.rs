@@ -334,36 +334,58 @@ fn check_orientation(mesh: &Mesh, region: &Region, faults: &mut Faults) {
     }
 }
 
-/// Regions that may be parts and are in pieces, in one warning: of a mesh with solids these alone, as surfaces often are.
+/// Pieces nearer to each other than this part of their size touch.
+const TOUCHING: f64 = 1e-6;
+
+/// Regions that may be parts and are in pieces that touch, in one warning: of a mesh with solids these alone, as surfaces often are. Pieces that are
+/// apart, as the linings on both sides of a disc, are one part on purpose.
 fn check_pieces(mesh: &Mesh, warnings: &mut Vec<Fault>) {
     let solids = mesh.regions.iter().any(|region| region.dimension == 3);
     let parts = mesh.regions.iter().filter(|region| region.dimension >= if solids { 3 } else { 1 });
-    let counts =
-        parts.map(|region| (&region.name, count_pieces(mesh, region))).filter(|(_, pieces)| *pieces > 1);
-    let (names, pieces): (Vec<_>, Vec<_>) =
-        counts.map(|(name, pieces)| (format!("`{name}`"), pieces.to_string())).unzip();
-    if !names.is_empty() {
-        let place = format!("region{} {}", if names.len() > 1 { "s" } else { "" }, names.join(", "));
-        let found = format!("{} pieces that share no node", pieces.join(", "));
-        warnings.push(
-            Fault::new(place, found, "one").with_help("Where they should be one part, merge their nodes"),
-        );
+    for region in parts {
+        let boxes = pieces(mesh, region);
+        let near = |a: &[[f64; 3]; 2], b: &[[f64; 3]; 2]| {
+            let size = (0..3).map(|k| a[1][k].max(b[1][k]) - a[0][k].min(b[0][k])).fold(0.0, f64::max);
+            (0..3).all(|k| a[0][k].max(b[0][k]) - a[1][k].min(b[1][k]) <= TOUCHING * size)
+        };
+        let touching = (1..boxes.len()).any(|i| boxes[..i].iter().any(|other| near(&boxes[i], other)));
+        if touching {
+            let found = format!("{} pieces that touch and share no node", boxes.len());
+            warnings.push(
+                Fault::new(format!("region `{}`", region.name), found, "one")
+                    .with_help("Where they should be one part, merge their nodes"),
+            );
+        }
     }
 }
 
 /// The number of pieces of a region that share no node.
 pub(super) fn count_pieces(mesh: &Mesh, region: &Region) -> usize {
+    pieces(mesh, region).len()
+}
+
+/// The boxes about the pieces of a region that share no node.
+fn pieces(mesh: &Mesh, region: &Region) -> Vec<[[f64; 3]; 2]> {
     let elements = region.elements.iter().map(|e| mesh.elements[*e].nodes());
     let lowest = lowest_connected(mesh.nodes.len(), elements);
-    mesh.region_nodes(region).into_iter().filter(|n| lowest[*n] == *n).count()
+    let mut boxes: BTreeMap<usize, [[f64; 3]; 2]> = BTreeMap::new();
+    for node in mesh.region_nodes(region) {
+        let p = mesh.nodes[node];
+        let of = boxes.entry(lowest[node]).or_insert([p; 2]);
+        *of = around(*of, p);
+    }
+    boxes.into_values().collect()
+}
+
+/// A box about a box and a point.
+fn around([low, high]: [[f64; 3]; 2], p: [f64; 3]) -> [[f64; 3]; 2] {
+    [[0, 1, 2].map(|k| low[k].min(p[k])), [0, 1, 2].map(|k| high[k].max(p[k]))]
 }
 
 /// The corners of the bounding box; `None` for a mesh without nodes.
 pub(super) fn bounds(mesh: &Mesh) -> Option<[[f64; 3]; 2]> {
     let first = *mesh.nodes.first()?;
-    Some(mesh.nodes.iter().fold([first; 2], |[low, high], p| {
-        [[0, 1, 2].map(|k| low[k].min(p[k])), [0, 1, 2].map(|k| high[k].max(p[k]))]
-    }))
+    Some(mesh.nodes.iter().fold([first; 2], |of, p| around(of, *p)))
 }
 
 #[cfg(test)]
@@ -383,6 +405,34 @@ mod tests {
             ..Origin::default()
         };
         mesh
+    }
+
+    /// Two boxes of one region, a gap apart.
+    #[test]
+    fn pieces_that_touch_are_warned_of_and_pieces_apart_are_one_part() {
+        for (gap, touches) in [(0.0, true), (1e-9, true), (-0.2, true), (1e-3, false), (0.5, false)] {
+            let mut mesh = structured_box(CellKind::Hexahedron8, [1.0, 2.0, 1.0], [1, 1, 1]).unwrap();
+            let mut other = mesh.clone();
+            let offset = mesh.nodes.len();
+            other.nodes.iter_mut().for_each(|p| p[0] += 1.0 + gap);
+            mesh.nodes.extend(other.nodes);
+            let solids = mesh.regions.iter_mut().find(|region| region.dimension == 3).unwrap();
+            let second: Vec<usize> = (0..solids.elements.len()).map(|k| mesh.elements.len() + k).collect();
+            let own = solids.elements.clone();
+            solids.elements.extend(second);
+            for e in own {
+                let nodes: Vec<usize> = mesh.elements[e].nodes().iter().map(|n| n + offset).collect();
+                mesh.elements.push(Cell::new(CellKind::Hexahedron8, &nodes).unwrap());
+            }
+            let solids = mesh.regions.iter().find(|region| region.dimension == 3).unwrap();
+            assert_eq!(count_pieces(&mesh, solids), 2);
+            let said = diagnose(&mesh)
+                .warnings
+                .iter()
+                .filter(|fault| fault.to_string().contains("share no node"))
+                .count();
+            assert_eq!(said, usize::from(touches), "{gap}");
+        }
     }
 
     fn one_fault(mesh: &Mesh) -> String {

@@ -109,7 +109,8 @@ impl HistoryWriter<'_, '_> {
         let integrator = plan.scheme.own_growth(eigenvalue.norm(), plan.step);
         let compared =
             |found, refused| Ok(Some(GrowthCompared { mode, eigenvalue, found, refused, integrator }));
-        if let Some(why) = unreadable(eigenvalue, plan, time) {
+        // From the first row to the last of them.
+        if let Some(why) = unreadable(eigenvalue, plan, time - plan.step) {
             return compared(None, Some(why));
         }
         let [re, im] = self.recorder.channels.amplitude.map(|channel| self.read(channel, 0..end));

@@ -14,6 +14,7 @@ use crate::job::time_function::profile;
 use crate::job::travel::tracks;
 use crate::linalg::SparseVector;
 use crate::results::RecordSize;
+use crate::schema::dotted;
 use crate::sound::Acoustics;
 use crate::system::{ContactPair, System};
 use crate::transient::{self, Pulse, Push, Track};
@@ -79,12 +80,30 @@ pub(super) fn steps(time: f64, step: f64) -> usize {
     (time / step).round().max(1.0) as usize
 }
 
+/// The fault of loss factors, at those of the materials.
+fn of_materials(prepared: &Prepared<'_>, error: Error) -> Error {
+    let Error::Input(Faults(faults)) = error else { return error };
+    let parts = &prepared.model.parts;
+    let lossy = prepared.case.material.iter().filter(|(_, material)| {
+        material.loss_factor > 0.0 && parts.iter().any(|part| part.kind.material() == *material)
+    });
+    let places: Vec<String> =
+        lossy.map(|(name, _)| format!("`material.{}.loss_factor`", dotted(name))).collect();
+    if places.is_empty() {
+        return Error::Input(Faults(faults));
+    }
+    let at = |place: &String| {
+        faults.iter().map(|fault| Fault { place: place.clone(), ..fault.clone() }).collect::<Vec<_>>()
+    };
+    Error::Input(Faults(places.iter().flat_map(at).collect()))
+}
+
 /// The places of a run in time; checked before anything is computed or written.
 ///
 /// # Errors
 /// Every name that the mesh does not have, and damping that time does not know.
 pub fn places(prepared: &Prepared<'_>, wanted: &TransientAnalysis) -> Result<TransientPlaces> {
-    transient::refuse_hysteretic(&prepared.system)?;
+    transient::refuse_hysteretic(&prepared.system).map_err(|error| of_materials(prepared, error))?;
     let mut faults = Faults::new();
     faults.take(check_step(&prepared.system.structure, wanted.time_step));
     faults.0.extend(clashing(prepared.case, wanted));

@@ -167,6 +167,7 @@ mod tests {
             shares: None,
             without_split: vec![],
             measured_squeal_hz: vec![],
+            modal_damping_below_hz: None,
             band_hz: [0.0, top],
             certificate: None,
             confirmation: None,
