@@ -6,9 +6,9 @@ use crate::error::{Error, Fault};
 const ABSENT: [(&[&str], &str); 11] = [
     (&["volume", "brick", "tet", "hex"], "A solid is a [solid.NAME], named as its region of the mesh"),
     (
-        &["mpc", "coupling", "constraint", "equation", "rbe2", "rbe3", "bond", "bonded", "glue"],
+        &["mpc", "coupling", "constraint", "rbe2", "rbe3", "bond", "bonded", "glue"],
         "Surfaces are joined by [tie.NAME] with `on` and `to`, regions to a point by [rigid.NAME], or by [averaging.NAME] without making \
-         them stiffer",
+         them stiffer, degrees of freedom by [equation.NAME]",
     ),
     (
         &["rotation_speed", "rotational_speed", "angular_velocity", "omega", "rpm", "spin"],

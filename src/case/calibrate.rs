@@ -2,7 +2,7 @@
 
 use super::varied::check_parameters;
 use super::{
-    Case, ContactPoints, ContactState, Matrices, MatrixTerm, MeshSource, Parameter, VariedParameter,
+    Case, ContactPoints, ContactState, Equation, Matrices, MatrixTerm, MeshSource, Parameter, VariedParameter,
 };
 use crate::error::Result;
 use crate::schema::units::NUMBER;
@@ -156,6 +156,10 @@ impl Case {
                 files.extend([mass, damping, stiffness].into_iter().flatten());
             }
         }
+        files.extend(self.equation.values_mut().filter_map(|equation| match equation {
+            Equation::File { file } => Some(file),
+            Equation::Terms { .. } => None,
+        }));
         files.extend(self.measured.values_mut().filter_map(|measured| measured.file.as_mut()));
         files.extend(self.contact.values_mut().filter_map(|contact| match &mut contact.points {
             Some(ContactPoints::File(file)) => Some(file),

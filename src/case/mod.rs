@@ -10,6 +10,7 @@ mod calibrate;
 mod check;
 mod consistent;
 mod contact;
+mod equation;
 mod explore;
 mod expression;
 mod frf;
@@ -35,12 +36,14 @@ pub use contact::{
     BristleChoice, Contact, ContactPoints, ContactRotation, Friction, FrictionCurve, InitialGap, Normal,
     Placement, Pressing, Sense, SlidingChoice, StiffnessPer,
 };
+pub use equation::Equation;
 pub use explore::{MapAnalysis, SweepAnalysis};
 pub use expression::{Dual, evaluate};
 pub use frf::{FrfAnalysis, FrfContact, FrfQuantity, FrfSolution, MotionAt, UniversalForm};
 pub use matrices::{Factor, Matrices, MatrixTerm};
 pub use measured::{MeasuredData, Transform};
 pub use mesh::{AnnulusMesh, LengthUnit, MeshSource, PlateMesh, RigMesh};
+pub(crate) use model::DOF_NAMES;
 pub use model::{
     Averaging, Axis, Bar, Force, ForceChoice, Held, Mass, Profile, Rigid, Shell, Solid, SpringPer, SpringSet,
     StructureDamping, Tie,
@@ -106,6 +109,8 @@ declare! {
         pub averaging: BTreeMap<String, Averaging> = key::named(),
         /// Surfaces that are joined although their meshes do not match, by name.
         pub tie: BTreeMap<String, Tie> = key::named(),
+        /// Linear constraints between degrees of freedom, by name.
+        pub equation: BTreeMap<String, Equation> = key::named(),
         /// Supports by name.
         pub support: BTreeMap<String, Held> = key::named(),
         /// Steady rotations of parts by name.

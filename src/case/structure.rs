@@ -20,7 +20,7 @@ impl Case {
     }
 
     /// The sections of the structure, and whether the case has them.
-    pub(super) fn structure(&self) -> [(&'static str, bool); 14] {
+    pub(super) fn structure(&self) -> [(&'static str, bool); 15] {
         [
             ("mesh", self.mesh.is_some()),
             ("point", !self.point.is_empty()),
@@ -33,6 +33,7 @@ impl Case {
             ("rigid", !self.rigid.is_empty()),
             ("averaging", !self.averaging.is_empty()),
             ("tie", !self.tie.is_empty()),
+            ("equation", !self.equation.is_empty()),
             ("support", !self.support.is_empty()),
             ("rotation", !self.rotation.is_empty()),
             ("force", !self.force.is_empty()),
@@ -53,6 +54,7 @@ impl Case {
             rigid: BTreeMap::new(),
             averaging: BTreeMap::new(),
             tie: BTreeMap::new(),
+            equation: BTreeMap::new(),
             support: BTreeMap::new(),
             rotation: BTreeMap::new(),
             force: BTreeMap::new(),
@@ -75,10 +77,10 @@ mod tests {
                     [bar.b]\nmaterial = \"steel\"\ndiameter = 0.01\n[solid.c]\nmaterial = \"steel\"\n\
                     [mass.m]\non = \"tip\"\nmass = 1\n[spring.s]\non = \"tip\"\nstiffness = 1\ndirection = [1, 0, 0]\n\
                     [rigid.r]\nmaster = \"tip\"\nfollow = [\"a\"]\n[averaging.v]\npoint = \"tip\"\nof = [\"c\"]\n\
-                    [tie.t]\non = \"a\"\nto = \"c\"\n[support.u]\non = \"b\"\n\
+                    [tie.t]\non = \"a\"\nto = \"c\"\n[equation.e]\nfile = \"e.csv\"\n[support.u]\non = \"b\"\n\
                     [rotation.o]\nparts = [\"c\"]\nspeed = 1\n[force.f]\non = \"tip\"\nforce = [1, 0, 0]\n";
         let case = Case::parse("case.toml", text, PathBuf::new()).unwrap();
         let there = |case: &Case| case.structure().iter().filter(|(_, there)| *there).count();
-        assert_eq!((there(&case), there(&case.without_structure())), (14, 0));
+        assert_eq!((there(&case), there(&case.without_structure())), (15, 0));
     }
 }

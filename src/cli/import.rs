@@ -82,6 +82,9 @@ fn write(folder: &Path, made: &Converted) -> Result<()> {
     create(folder)?;
     write_into(folder, "case.toml", &format!("{}\n{}", schema_line(), made.case))?;
     write_into(folder, Converted::MESH_FILE, &mesh)?;
+    if let Some(equations) = &made.equations {
+        write_into(folder, Converted::EQUATIONS_FILE, equations)?;
+    }
     write_into(folder, "import.md", &made.page)
 }
 

@@ -106,6 +106,14 @@ pub fn check_turning(case: &Case, regions: &Regions, model: &Model, faults: &mut
     }
     let slaves = model.couplings.iter().flat_map(|coupling| &coupling.constraints).map(|c| c.slave);
     slaves.filter(|(_, component)| *component > 2).for_each(|(node, _)| turns[node] = true);
+    for coupling in &model.couplings {
+        let terms = coupling.constraints.iter().flat_map(|constraint| &constraint.terms);
+        let still = |(node, component, _): &&(usize, usize, f64)| *component > 2 && !turns[*node];
+        if let Some((node, ..)) = terms.into_iter().find(still) {
+            let found = format!("a rotation of {} of solids", regions.name_of_node(*node));
+            faults.push(Fault::new(&coupling.name, found, "displacements: solids have no rotations"));
+        }
+    }
     let mut check = |place: String, what: &str, on: &[String]| {
         // Regions that are missing are faults already.
         let nodes = regions.nodes_of(on, "", &mut Faults::new());

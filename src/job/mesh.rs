@@ -1,5 +1,6 @@
-//! The mesh of a case: read from a file, or generated.
+//! What a model is made from: the mesh of a case, read from a file or generated, and its equations.
 
+use super::equations::{EquationFiles, following, read_equations};
 use super::imported::MatrixFiles;
 use crate::case::{AnnulusMesh, Case, MeshSource, PlateMesh, RigMesh, SpringPer};
 use crate::error::{Error, Fault, Faults, Result};
@@ -13,6 +14,7 @@ pub(super) struct CaseFiles {
     /// Before anything is placed; empty where the case has none.
     pub(super) mesh: Arc<Mesh>,
     pub(super) matrices: MatrixFiles,
+    pub(super) equations: EquationFiles,
     /// What the user should know of it.
     pub(super) warnings: Vec<String>,
 }
@@ -27,8 +29,15 @@ pub(super) fn same_mesh(a: &Case, b: &Case) -> bool {
     a.mesh == b.mesh && a.folder == b.folder && rig(a) == rig(b)
 }
 
-/// The mesh of the case, checked; an empty one where it has none.
-pub(super) fn read_mesh(case: &Case) -> Result<CaseFiles> {
+/// What the model of the case is made from: its mesh, checked, an empty one where it has none; its equations.
+pub(super) fn read_files(case: &Case) -> Result<CaseFiles> {
+    let mut faults = Faults::new();
+    let equations = faults.take(read_equations(case)).unwrap_or_default();
+    let files = faults.take(read_mesh(case, &equations)).unwrap_or_default();
+    faults.into_result(CaseFiles { equations, ..files })
+}
+
+fn read_mesh(case: &Case, equations: &EquationFiles) -> Result<CaseFiles> {
     let Some(source) = &case.mesh else { return Ok(CaseFiles::default()) };
     let mesh = match source {
         MeshSource::File { file, unit } => {
@@ -48,7 +57,8 @@ pub(super) fn read_mesh(case: &Case) -> Result<CaseFiles> {
     let springs = springs.filter_map(|spring| Some([spring.on.as_str(), spring.to.as_deref()?]));
     let ties = case.tie.values().map(|tie| [tie.on.as_str(), tie.to.as_str()]);
     let pairs = contacts.chain(ties).chain(springs);
-    let diagnosis = mesh::diagnose_apart(&mesh, &pairs.collect::<Vec<_>>());
+    let diagnosis =
+        mesh::diagnose_apart(&mesh, &pairs.collect::<Vec<_>>(), following(case, &mesh, equations));
     let key = match source {
         MeshSource::File { .. } => "file",
         MeshSource::Rig { .. } => "rig",

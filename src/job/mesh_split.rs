@@ -81,7 +81,7 @@ fn without_split(prepared: &Prepared, hz: f64, observer: &dyn Observer) -> Resul
             measured_source: String::new(),
             uff: false,
         };
-        let mut model = part_model(prepared.case, &prepared.regions, &prepared.model, name, &alone)?;
+        let mut model = part_model(&prepared.regions, &prepared.model, name, &alone)?;
         model.masses.clear();
         model.supports.extend(all_around(prepared, &disc, &model));
         let mut assembled = assemble(&model)?;

@@ -23,6 +23,7 @@ mod counter;
 mod couplings;
 mod deck;
 mod discs;
+mod equations;
 mod explore;
 mod export;
 #[cfg(feature = "cli")]

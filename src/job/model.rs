@@ -7,13 +7,18 @@ use super::rotation::add_rotations;
 use crate::case::{Case, ModesAnalysis, SpringPer};
 use crate::error::{Fault, Faults, Result};
 use crate::mesh::Cell;
-use crate::structure::{Bar, Model, Part, PointMass, Shell, Solid, Spring, Support};
+use crate::structure::{Bar, Coupling, Model, Part, PointMass, Shell, Solid, Spring, Support};
 
-/// The structure of the whole case; `warnings` take what the user should know of it.
+/// The structure of the whole case with its equations; `warnings` take what the user should know of it.
 ///
 /// # Errors
 /// Every region that is missing or of the wrong kind, constraints that contradict each other.
-pub fn whole_model(case: &Case, regions: &Regions, warnings: &mut Vec<String>) -> Result<Model> {
+pub fn whole_model(
+    case: &Case,
+    regions: &Regions,
+    equations: Vec<Coupling>,
+    warnings: &mut Vec<String>,
+) -> Result<Model> {
     let mut faults = Faults::new();
     let mut model = Model { nodes: regions.mesh.nodes.clone(), ..Model::default() };
     for (name, shell) in &case.shell {
@@ -66,6 +71,7 @@ pub fn whole_model(case: &Case, regions: &Regions, warnings: &mut Vec<String>) -
     }
     add_area_springs(case, regions, &mut model, warnings, &mut faults);
     add_couplings(case, regions, &mut model, warnings, &mut faults);
+    model.couplings.extend(equations);
     add_links(case, regions, &mut model, &mut faults);
     check_turning(case, regions, &model, &mut faults);
     add_rotations(case, &mut model, warnings, &mut faults);
@@ -76,13 +82,7 @@ pub fn whole_model(case: &Case, regions: &Regions, warnings: &mut Vec<String>) -
 ///
 /// # Errors
 /// A region to clamp that is missing.
-pub fn part_model(
-    case: &Case,
-    regions: &Regions,
-    whole: &Model,
-    name: &str,
-    analysis: &ModesAnalysis,
-) -> Result<Model> {
+pub fn part_model(regions: &Regions, whole: &Model, name: &str, analysis: &ModesAnalysis) -> Result<Model> {
     let mut faults = Faults::new();
     let wanted = |part: &str| analysis.parts.is_empty() || analysis.parts.iter().any(|p| p == part);
     let mut model = Model {
@@ -99,7 +99,8 @@ pub fn part_model(
         model.inclined_supports = whole.inclined_supports.clone();
     }
     let clamp = regions.nodes_of(&analysis.clamp, &format!("`modes.{name}.clamp`"), &mut faults);
-    let mut used = vec![!case.point.is_empty() && analysis.parts.is_empty(); model.nodes.len()];
+    // Of the whole, points that no cell has, too: masters of rigid bodies, ends of springs, nodes of equations.
+    let mut used = vec![analysis.parts.is_empty(); model.nodes.len()];
     model.parts.iter().flat_map(|part| &part.cells).flat_map(Cell::nodes).for_each(|n| used[*n] = true);
     // The far ends of springs that are spread over faces.
     let ends = regions.mesh.nodes.len();

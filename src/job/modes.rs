@@ -46,8 +46,7 @@ pub fn part_assembled<'p>(prepared: &'p Prepared, name: &str) -> Result<(Cow<'p,
     let (model, assembled) = if prepared.case.matrices.is_some() || of_the_whole(prepared, analysis) {
         (Cow::Borrowed(&prepared.model), prepared.assembled.clone())
     } else {
-        let model =
-            super::model::part_model(prepared.case, &prepared.regions, &prepared.model, name, analysis)?;
+        let model = super::model::part_model(&prepared.regions, &prepared.model, name, analysis)?;
         let clamp = (!analysis.clamp.is_empty()).then(|| format!("`modes.{name}.clamp`"));
         let mut assembled =
             assemble(&model).map_err(|error| in_terms_of_the_case(error, prepared.case, clamp))?;
@@ -73,13 +72,7 @@ pub fn check_part(prepared: &Prepared, name: &str) -> Result<()> {
     if prepared.case.matrices.is_some() || of_the_whole(prepared, analysis) {
         return Ok(());
     }
-    structure::check(&super::model::part_model(
-        prepared.case,
-        &prepared.regions,
-        &prepared.model,
-        name,
-        analysis,
-    )?)
+    structure::check(&super::model::part_model(&prepared.regions, &prepared.model, name, analysis)?)
 }
 
 /// Which modes an analysis of a structure with `n_dofs` degrees of freedom asks for.

@@ -2,10 +2,11 @@
 
 use super::contacts::{arrows, contact_pairs};
 use super::discs::discs;
+use super::equations::equations;
 use super::forces::external_load;
 use super::imported::read_model;
 use super::links::in_terms_of_the_case;
-use super::mesh::{CaseFiles, read_mesh, same_mesh};
+use super::mesh::{CaseFiles, read_files, same_mesh};
 use super::model::whole_model;
 use super::place::place;
 use super::regions::Regions;
@@ -46,7 +47,7 @@ impl<'a> Prepared<'a> {
     /// # Errors
     /// Every fault of the mesh and of the names that tie the case to it.
     pub fn new(case: &'a Case) -> Result<Self> {
-        let files = read_mesh(case).map(Arc::new);
+        let files = read_files(case).map(Arc::new);
         files.and_then(|files| Self::build(case, files)).map_err(|error| case.places.locate(error))
     }
 
@@ -69,12 +70,13 @@ impl<'a> Prepared<'a> {
         let mut warnings = files.warnings.clone();
         let mut faults = Faults::new();
         let named = faults.take(regions.check_named(case)).is_some();
+        let equations = faults.take(equations(case, &regions, &files.equations)).unwrap_or_default();
         for (name, contact) in case.contact.iter().filter(|_| named) {
             if let Some(placement) = &contact.placement {
-                faults.take(place(&mut regions, case, name, contact, placement));
+                faults.take(place(&mut regions, (case, &equations), name, contact, placement));
             }
         }
-        let model = faults.take(whole_model(case, &regions, &mut warnings));
+        let model = faults.take(whole_model(case, &regions, equations, &mut warnings));
         let model = faults.into_result(model)?.unwrap_or_default();
         let assembled = Arc::new(assemble(&model).map_err(|error| in_terms_of_the_case(error, case, None))?);
         let pairs = contact_pairs(case, &regions, &model, &assembled.dofs)?;

@@ -46,7 +46,13 @@ struct Written {
 
 /// A case on a mesh, its frequencies, and its deck in a format.
 fn written(mesh: &Mesh, case: &str, format: Format) -> Written {
+    written_with("", mesh, case, format)
+}
+
+/// The same with a file of equations, `equations.csv`.
+fn written_with(equations: &str, mesh: &Mesh, case: &str, format: Format) -> Written {
     let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("equations.csv"), equations).unwrap();
     std::fs::write(folder.path().join("mesh.msh"), to_msh_exactly(mesh).unwrap()).unwrap();
     let text = format!("[mesh]\nfile = \"mesh.msh\"\nunit = \"m\"\n{STEEL}{case}");
     std::fs::write(folder.path().join("case.toml"), &text).unwrap();
@@ -175,13 +181,60 @@ fn calculix_finds_the_frequencies_of_joined_parts() {
     assert!(within(off, 1e-3, Theory), "{off:e}");
 }
 
+/// Two beams in a row whose coincident nodes equations join, the second with half the deflection of the first, u_z = ½ u_z', and with an end
+/// that stays plane: mesh, equations, case.
+fn geared_beams() -> (Mesh, String, String) {
+    let mut mesh = Mesh::default();
+    for (name, x) in [("beam", 0.0), ("tip", 0.1)] {
+        let mut own = structured_box(CellKind::Hexahedron20, [0.1, 0.02, 0.01], [4, 2, 1]).unwrap();
+        own.nodes.iter_mut().for_each(|node| node[0] += x);
+        for region in &mut own.regions {
+            region.name = if region.dimension == 3 { name.into() } else { format!("{name}_{}", region.name) };
+        }
+        mesh.append(own);
+    }
+    let mut equations = "equation,node,component,factor\n".to_string();
+    let (mut count, half) = (0, mesh.nodes.len() / 2);
+    for a in 0..half {
+        let near = |b: &usize| (0..3).all(|k| (mesh.nodes[a][k] - mesh.nodes[*b][k]).abs() < 1e-9);
+        let Some(b) = (half..2 * half).find(near) else { continue };
+        for (component, factor) in [("ux", 1.0), ("uy", 1.0), ("uz", 2.0)] {
+            count += 1;
+            equations +=
+                &format!("{count},{},{component},{factor}\n{count},{},{component},-1\n", b + 1, a + 1);
+        }
+    }
+    assert_eq!(count, 39);
+    let case = "[point]\nend = [0.2, 0.01, 0.005]\n[solid.beam]\nmaterial = \"steel\"\n[solid.tip]\nmaterial = \"steel\"\n\
+                [equation.gear]\nfile = \"equations.csv\"\n[equation.plane]\non = [\"tip_x_max\", \"end\"]\n\
+                component = [\"ux\", \"ux\"]\nfactor = [1, -1]\n[support.wall]\non = \"beam_x_min\"\n[modes.all]\ncount = 8\n";
+    (mesh, equations, case.to_string())
+}
+
+/// The elements are the same there: the frequencies are, to the digits of its file.
+#[test]
+fn calculix_finds_the_frequencies_of_equations() {
+    let (mesh, equations, case) = geared_beams();
+    let written = written_with(&equations, &mesh, &case, Format::Abaqus);
+    assert_eq!((written.left_out.rows().count(), written.text.matches("*EQUATION").count()), (0, 39 + 13));
+    let Some(off) = difference(&written) else { return };
+    println!("equations {off:e}");
+    assert!(within(off, 1e-5, Reference), "{off:e}");
+}
+
 /// The deck of a case, imported, has the frequencies of the case, in both formats.
 #[test]
 fn what_is_written_is_imported_as_the_same_model() {
-    // Equations are not imported.
-    let case = format!("{JOINED}held = [\"ux\", \"uz\"]\n");
-    for (format, digits) in [(Format::Abaqus, 1e-9), (Format::Nastran, 1e-6)] {
-        let written = written(&beam_and_pad(), &case, format);
+    let (geared, equations, case) = geared_beams();
+    let directions = format!("{JOINED}{ABOUT_AXIS}");
+    let axes = format!("{JOINED}held = [\"ux\", \"uz\"]\n");
+    let models =
+        [(&beam_and_pad(), "", &axes), (&beam_and_pad(), "", &directions), (&geared, &*equations, &case)];
+    let formats = [(Format::Abaqus, 1e-9), (Format::Nastran, 1e-6)];
+    for ((mesh, equations, case), (format, digits)) in
+        models.into_iter().flat_map(|m| formats.map(|f| (m, f)))
+    {
+        let written = written_with(equations, mesh, case, format);
         let deck = decks::read_bytes("a", written.text.as_bytes(), format);
         let deck = deck.unwrap_or_else(|error| panic!("{error}\n{}", written.text));
         let made = convert(&deck, Units::named("m").unwrap()).unwrap();
@@ -190,6 +243,7 @@ fn what_is_written_is_imported_as_the_same_model() {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join("mesh.msh"), to_msh_exactly(&made.mesh).unwrap()).unwrap();
         std::fs::write(folder.path().join("case.toml"), &made.case).unwrap();
+        std::fs::write(folder.path().join("equations.csv"), made.equations.unwrap_or_default()).unwrap();
         let case = read_case(&folder.path().join("case.toml"))
             .unwrap_or_else(|error| panic!("{error}\n{}", made.case));
         let other = frequencies(&Prepared::new(&case).unwrap());

@@ -14,6 +14,7 @@ mod constraints;
 mod contact;
 mod curved;
 mod elements;
+mod equations;
 mod export;
 mod import;
 mod joined;

@@ -11,7 +11,7 @@ fn stored(name: &str) -> Mesh {
 
 fn committed(name: &str) -> Mesh {
     let mesh = stored(name);
-    let diagnosis = diagnose_apart(&mesh, &[["pad_face", "disc_face"]]);
+    let diagnosis = diagnose_apart(&mesh, &[["pad_face", "disc_face"]], Default::default());
     assert!(diagnosis.warnings.is_empty(), "{name}: {:?}", diagnosis.warnings);
     mesh
 }

@@ -165,7 +165,7 @@ pub(crate) fn held(deck: &Deck) -> Held {
 }
 
 /// What a support holds, node by node.
-fn held_nodes(deck: &Deck, support: &Support) -> Vec<HeldNode> {
+pub(crate) fn held_nodes(deck: &Deck, support: &Support) -> Vec<HeldNode> {
     let of = |node: usize| {
         let Some(axes) = axes_at(support.frame, deck.nodes[node].position) else {
             return HeldNode { node, held: support.held, sums: Vec::new() };

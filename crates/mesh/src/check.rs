@@ -41,12 +41,12 @@ pub struct Diagnosis {
 /// # Ok::<(), stridor_base::error::Error>(())
 /// ```
 pub fn diagnose(mesh: &Mesh) -> Diagnosis {
-    diagnose_apart(mesh, &[])
+    diagnose_apart(mesh, &[], HashSet::new())
 }
 
 /// The same of a mesh in which the two regions of each pair are in contact, or tied: their nodes may be in the same place, or on each other's
-/// edges, without being joined.
-pub fn diagnose_apart(mesh: &Mesh, pairs: &[[&str; 2]]) -> Diagnosis {
+/// edges, without being joined; so may nodes that are `following` others by equations.
+pub fn diagnose_apart(mesh: &Mesh, pairs: &[[&str; 2]], following: HashSet<usize>) -> Diagnosis {
     let mut faults = Faults::new();
     check_coordinates(mesh, &mut faults);
     if !faults.0.is_empty() {
@@ -55,7 +55,7 @@ pub fn diagnose_apart(mesh: &Mesh, pairs: &[[&str; 2]]) -> Diagnosis {
     }
     let mut diagnosis = Diagnosis { faults, warnings: Vec::new() };
     check_unreferenced(mesh, &mut diagnosis);
-    let apart = Apart::new(mesh, pairs);
+    let apart = Apart::new(mesh, pairs, following);
     check_coincident(mesh, &apart, &mut diagnosis);
     check_hanging(mesh, &apart, &mut diagnosis.warnings);
     check_shapes(mesh, &mut diagnosis);
@@ -67,21 +67,27 @@ pub fn diagnose_apart(mesh: &Mesh, pairs: &[[&str; 2]]) -> Diagnosis {
     diagnosis
 }
 
-/// The nodes of regions that are in contact or tied, a pair of sets each.
-struct Apart(Vec<[HashSet<usize>; 2]>);
+struct Apart {
+    /// The nodes of regions that are in contact or tied, a pair of sets each.
+    pairs: Vec<[HashSet<usize>; 2]>,
+    /// The nodes that follow others by equations.
+    following: HashSet<usize>,
+}
 
 impl Apart {
-    fn new(mesh: &Mesh, pairs: &[[&str; 2]]) -> Self {
+    fn new(mesh: &Mesh, pairs: &[[&str; 2]], following: HashSet<usize>) -> Self {
         let nodes = |name: &str| -> HashSet<usize> {
             mesh.region(name).map_or(HashSet::new(), |region| mesh.region_nodes(region).into_iter().collect())
         };
-        Apart(pairs.iter().map(|pair| pair.map(nodes)).collect())
+        Apart { pairs: pairs.iter().map(|pair| pair.map(nodes)).collect(), following }
     }
 
-    /// Whether all of `a` are on one side of a contact and all of `b` on the other.
+    /// Whether all of `a` are on one side of a contact and all of `b` on the other, or either follow others.
     fn are(&self, a: &[usize], b: &[usize]) -> bool {
         let on = |nodes: &[usize], side: &HashSet<usize>| nodes.iter().all(|node| side.contains(node));
-        self.0.iter().any(|[one, other]| on(a, one) && on(b, other) || on(a, other) && on(b, one))
+        let apart =
+            |[one, other]: &[HashSet<usize>; 2]| on(a, one) && on(b, other) || on(a, other) && on(b, one);
+        on(a, &self.following) || on(b, &self.following) || self.pairs.iter().any(apart)
     }
 }
 
@@ -474,6 +480,8 @@ mod tests {
         mesh.nodes[4] = mesh.nodes[3];
         let text = diagnose(&mesh).faults.to_string();
         assert!(text.contains("nodes 104 and 105") && text.contains("same place in one region"), "{text}");
+        let text = diagnose_apart(&mesh, &[], HashSet::from([4])).faults.to_string();
+        assert!(!text.contains("same place"), "{text}");
 
         let mut mesh = plate();
         mesh.elements[1] = Cell::quadrilateral([1, 4, 5, 2]);
@@ -504,10 +512,10 @@ mod tests {
             mesh.append(upper);
             assert!(!diagnose(&mesh).warnings.is_empty(), "{cells:?}");
             for pair in [["z_max", "z_min_upper"], ["z_min_upper", "z_max"]] {
-                let diagnosis = diagnose_apart(&mesh, &[pair]);
+                let diagnosis = diagnose_apart(&mesh, &[pair], HashSet::new());
                 assert!(diagnosis.warnings.is_empty(), "{cells:?}: {:?}", diagnosis.warnings);
             }
-            assert!(!diagnose_apart(&mesh, &[["z_max", "z_max_upper"]]).warnings.is_empty());
+            assert!(!diagnose_apart(&mesh, &[["z_max", "z_max_upper"]], HashSet::new()).warnings.is_empty());
         }
     }
 

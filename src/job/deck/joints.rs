@@ -8,7 +8,7 @@ use crate::decks::{
 use crate::error::{Faults, Result};
 use crate::job::couplings::largest_tied_gap;
 use crate::mesh::quality::{dot, minus, norm};
-use crate::structure::Constraint;
+use crate::structure::{self, Constraint};
 use std::collections::BTreeMap;
 
 /// Springs that differ in their ends alone: degree of freedom, k and c.
@@ -60,7 +60,7 @@ impl Maker<'_> {
         length > 0.0 && dot(unit, line).abs() > (1.0 - PARALLEL) * length
     }
 
-    /// Rigid bodies and averages; constraints of springs between faces.
+    /// Rigid bodies, averages and equations; constraints of springs between faces.
     pub(super) fn links(&mut self) -> Result<()> {
         let (case, regions, place) = (self.case, &self.prepared.regions, Place::default());
         for (name, rigid) in &case.rigid {
@@ -82,9 +82,12 @@ impl Maker<'_> {
             let (name, kind) = (name.clone(), CouplingKind::Averaging);
             self.deck.couplings.push(Coupling { name, reference, nodes, of, kind, place });
         }
-        // The far ends of springs between faces follow these.
-        let far = self.model.couplings.iter().filter(|coupling| coupling.name.starts_with("`spring."));
-        for Constraint { slave, terms } in far.flat_map(|coupling| &coupling.constraints) {
+        // The far ends of springs between faces follow others, too.
+        let written = |coupling: &&structure::Coupling| {
+            ["`spring.", "`equation."].iter().any(|table| coupling.name.starts_with(table))
+        };
+        let equations = self.model.couplings.iter().filter(written);
+        for Constraint { slave, terms } in equations.flat_map(|coupling| &coupling.constraints) {
             let others = terms.iter().map(|(node, dof, factor)| (*node, *dof as u8, -factor));
             let terms = std::iter::once((slave.0, slave.1 as u8, 1.0)).chain(others).collect();
             self.deck.equations.push(Equation { terms, place });

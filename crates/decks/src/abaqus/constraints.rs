@@ -5,6 +5,7 @@ use super::reader::{Found, Reader, Row};
 use crate::deck::{Coupling, CouplingKind, Equation, Frame, Place, Support, Tie};
 use crate::ledger::Weight;
 use std::collections::HashMap;
+use stridor_mesh::quality::minus;
 
 /// Names for what *BOUNDARY holds.
 const HELD: [(&str, [bool; 6]); 9] = [
@@ -197,7 +198,7 @@ impl Reader {
     pub fn mpc(&mut self, space: usize, found: Found<'_>) {
         for row in found.rows() {
             let kind = row.cell(0).to_uppercase();
-            if !matches!(kind.as_str(), "BEAM" | "TIE" | "PIN") {
+            if !matches!(kind.as_str(), "BEAM" | "TIE" | "PIN" | "LINK") {
                 let why = "a constraint of this kind is not read";
                 self.deck.ledger.note(Weight::Matters, format!("*MPC, {kind}"), why, row.place);
                 continue;
@@ -209,6 +210,18 @@ impl Reader {
             };
             if kind != "BEAM" {
                 let position = |node: usize| self.deck.nodes[node].position;
+                if kind == "LINK" {
+                    for node in nodes {
+                        let line = minus(position(node), position(reference));
+                        let along = |end: usize, a: f64| (0..3).map(move |k| (end, k as u8, a * line[k]));
+                        let terms = along(node, 1.0).chain(along(reference, -1.0));
+                        let terms: Vec<_> = terms.filter(|(.., a)| *a != 0.0).collect();
+                        if !terms.is_empty() {
+                            self.deck.equations.push(Equation { terms, place: row.place });
+                        }
+                    }
+                    continue;
+                }
                 let apart = |node: &usize| position(*node) != position(reference);
                 if kind == "TIE" && !nodes.iter().any(apart) {
                     self.rigid(kind, reference, nodes, row.place);

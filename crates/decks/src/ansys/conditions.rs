@@ -117,10 +117,25 @@ pub(super) fn equations(reader: &mut Reader<'_>, deck: &mut Deck, index: &impl F
             let others: Vec<u64> = nodes.into_iter().skip(1).filter(|node| *node != first).collect();
             others
                 .into_iter()
-                .map(move |node| -> (Terms, Place) { (vec![(first, dof, 1.0), (node, dof, -1.0)], place) })
+                .map(move |node| -> (Terms, Place) { (vec![(node, dof, 1.0), (first, dof, -1.0)], place) })
         });
     let written = std::mem::take(&mut reader.model.equations).into_values();
-    for (terms, place) in written.chain(coupled).collect::<Vec<_>>() {
+    let mut written: Vec<(Terms, Place)> = written.chain(coupled).collect();
+    // The first that stands in no other equation and that nothing holds follows the others (theory reference, constraint equations).
+    let mut counts: HashMap<(u64, u8), usize> = HashMap::new();
+    let terms = written.iter().flat_map(|(terms, _)| terms);
+    terms.for_each(|(node, dof, _)| *counts.entry((*node, *dof)).or_default() += 1);
+    for (terms, _) in &mut written {
+        let held = |node: &u64, dof: &u8| {
+            reader.model.held.get(node).is_some_and(|held| held.freedoms[usize::from(*dof)])
+        };
+        let own =
+            |(node, dof, a): &(u64, u8, f64)| *a != 0.0 && counts[&(*node, *dof)] < 2 && !held(node, dof);
+        if let Some(first) = terms.iter().position(own) {
+            terms[..=first].rotate_right(1);
+        }
+    }
+    for (terms, place) in written {
         let mut all: Vec<(usize, u8, f64)> = Vec::new();
         for (node, dof, factor) in terms {
             let Some(at) = index(node) else {

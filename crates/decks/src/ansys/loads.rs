@@ -183,8 +183,12 @@ impl Reader<'_> {
             }
         };
         if constant != 0.0 {
-            let why = "an equation with a constant: it is taken as zero";
-            self.note(Weight::Perhaps, "CE", why, command.place);
+            let found = format!("CE with the constant {constant}");
+            self.fault(
+                command.place,
+                found,
+                "0: equations without a constant, which vibrations do not depend on",
+            );
         }
         let mut terms = Vec::new();
         let mut k = first;

@@ -35,7 +35,7 @@ impl Converter<'_> {
         let Support { title, name, mut nodes, held, frame, place } = support;
         nodes.sort_unstable();
         nodes.dedup();
-        let used = self.nodes_in_use(&nodes);
+        let mut used = self.nodes_in_use(&nodes);
         if used.is_empty() {
             return;
         }
@@ -46,12 +46,16 @@ impl Converter<'_> {
             of.into_iter().zip(held).filter(|(_, held)| *held).map(|(name, _)| name)
         };
         let (mut list, mut axis) = (Vec::new(), None);
+        let turned: Vec<usize> = used.iter().copied().filter(|node| self.uses[*node].rotates).collect();
         match frame {
             _ if displacements == [true; 3] || displacements == [false; 3] => {
                 list.extend(names(DISPLACEMENTS, displacements))
             }
             Frame::Global => list.extend(names(DISPLACEMENTS, displacements)),
             Frame::Cylindrical([point, along]) => {
+                let (leading, others) = used.iter().partition(|node| self.uses[**node].follows);
+                used = others;
+                self.hold_by_equations(leading, held_in(displacements, [false; 3]), frame, place);
                 list.extend(names(ABOUT_AXIS, displacements));
                 axis = Some((point, along));
             }
@@ -60,8 +64,7 @@ impl Converter<'_> {
                     list.extend((0..3).filter(|k| displacements[*k]).map(|k| DISPLACEMENTS[order[k]]))
                 }
                 None => {
-                    let why = "displacements held along axes that are not those of the coordinates are not in the case";
-                    self.ledger.note(Weight::Matters, "supports", why, place);
+                    self.hold_by_equations(used.clone(), held_in(displacements, [false; 3]), frame, place)
                 }
             },
         }
@@ -69,12 +72,11 @@ impl Converter<'_> {
             Frame::Global => list.extend(names(ROTATIONS, rotations)),
             _ if rotations == [true; 3] => list.extend(ROTATIONS),
             _ if rotations != [false; 3] => {
-                let why = "rotations held in another frame are not in the case";
-                self.ledger.note(Weight::Matters, "supports", why, place);
+                self.hold_by_equations(turned, held_in([false; 3], rotations), frame, place)
             }
             _ => {}
         }
-        if list.is_empty() {
+        if list.is_empty() || used.is_empty() {
             return;
         }
         list.sort_by_key(|name| {
@@ -113,11 +115,19 @@ impl Converter<'_> {
             }
         }
         for coupling in &self.deck.couplings {
-            self.uses[coupling.reference] = NodeUse { moves: true, rotates: true };
+            let uses = &mut self.uses[coupling.reference];
+            *uses = NodeUse { moves: true, rotates: true, ..*uses };
         }
         for spring in &self.deck.springs {
-            spring.ends.iter().filter_map(|(_, to)| *to).for_each(|node| self.uses[node].moves = true);
+            let rotates = spring.dof.is_some_and(|dof| dof > 2);
+            for (node, to) in spring.ends.iter().filter_map(|(node, to)| Some((*node, (*to)?))) {
+                for end in [node, to] {
+                    self.uses[end].moves = true;
+                    self.uses[end].rotates |= rotates;
+                }
+            }
         }
+        self.find_uses_of_equations();
     }
 
     /// `[rigid.NAME]`, `[averaging.NAME]`, `[tie.NAME]`.
@@ -293,6 +303,10 @@ impl Converter<'_> {
             }
         }
     }
+}
+
+fn held_in([x, y, z]: [bool; 3], [rx, ry, rz]: [bool; 3]) -> [bool; 6] {
+    [x, y, z, rx, ry, rz]
 }
 
 fn direction_of(dof: u8) -> [f64; 3] {

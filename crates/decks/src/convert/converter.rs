@@ -3,7 +3,7 @@
 use super::regions::Regions;
 use super::text::CaseText;
 use super::units::Units;
-use crate::deck::{Deck, Place};
+use crate::deck::{Deck, Equation, Place};
 use crate::ledger::Ledger;
 use std::collections::{HashMap, HashSet};
 use stridor_base::error::{Fault, Faults};
@@ -19,6 +19,8 @@ pub(super) struct Converter<'a> {
     pub names: TableNames,
     /// What each node is used for.
     pub uses: Vec<NodeUse>,
+    /// Supports that are equations.
+    pub held: Vec<Equation>,
     pub axes_of_materials: HashMap<String, [[f64; 3]; 2]>,
     pub warnings: Vec<String>,
     pub faults: Faults,
@@ -27,10 +29,12 @@ pub(super) struct Converter<'a> {
 /// What a node is used for.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct NodeUse {
-    /// Elements of the mesh, couplings or springs have it.
+    /// Elements of the mesh, couplings, springs or equations have it.
     pub moves: bool,
     /// Shells or beams have it, or nodes follow it.
     pub rotates: bool,
+    /// An equation makes it follow others.
+    pub follows: bool,
 }
 
 /// A part of the case.

@@ -4,6 +4,7 @@ mod analyses;
 mod constraints;
 mod contacts;
 mod converter;
+mod equations;
 mod page;
 mod parts;
 mod regions;
@@ -27,6 +28,8 @@ pub struct Converted {
     pub mesh: Mesh,
     /// The text of the case, which reads the mesh from [`Converted::MESH_FILE`].
     pub case: String,
+    /// The equations between degrees of freedom, a table that the case reads from [`Converted::EQUATIONS_FILE`].
+    pub equations: Option<String>,
     /// What was read, in Markdown.
     pub page: String,
     /// Sentences that the user should see.
@@ -40,6 +43,8 @@ pub struct Converted {
 impl Converted {
     /// The name of the file with the mesh, beside the case.
     pub const MESH_FILE: &'static str = "mesh.msh";
+    /// The name of the file with the equations, beside the case.
+    pub const EQUATIONS_FILE: &'static str = "equations.csv";
 }
 
 /// Makes a mesh and a case of a deck whose numbers are in a system of units.
@@ -56,6 +61,7 @@ pub fn convert(deck: &Deck, units: Units) -> Result<Converted> {
         parts: Vec::new(),
         names: TableNames::default(),
         uses: Vec::new(),
+        held: Vec::new(),
         axes_of_materials: HashMap::new(),
         warnings: Vec::new(),
         faults: Faults::new(),
@@ -84,7 +90,7 @@ pub fn convert(deck: &Deck, units: Units) -> Result<Converted> {
     converter.springs();
     converter.loads();
     converter.contacts();
-    converter.equations();
+    let equations = converter.equations();
     converter.analyses();
     let lost = converter.lost();
     let (page, mass) = converter.page();
@@ -96,7 +102,7 @@ pub fn convert(deck: &Deck, units: Units) -> Result<Converted> {
         units.words,
         quoted(Converted::MESH_FILE)
     );
-    Ok(Converted { mesh: regions.mesh, case: head + &case.finish(), page, warnings, mass, ledger })
+    Ok(Converted { mesh: regions.mesh, case: head + &case.finish(), equations, page, warnings, mass, ledger })
 }
 
 impl Converter<'_> {
@@ -142,13 +148,6 @@ impl Converter<'_> {
             }
         }
         text
-    }
-
-    fn equations(&mut self) {
-        for equation in &self.deck.equations {
-            let why = "linear equations between degrees of freedom are not in the case";
-            self.ledger.note(Weight::Matters, "equations", why, equation.place);
-        }
     }
 }
 

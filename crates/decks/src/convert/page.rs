@@ -180,7 +180,7 @@ impl Converter<'_> {
     }
 
     /// The place without its folder.
-    fn short_place(&self, place: crate::deck::Place) -> String {
+    pub(super) fn short_place(&self, place: crate::deck::Place) -> String {
         let file = self.deck.files.get(place.file as usize).and_then(|file| file.file_name());
         format!("{}:{}", file.unwrap_or_default().to_string_lossy(), place.line)
     }

@@ -98,7 +98,7 @@ mod tests {
         let brake = disc_brake().unwrap();
         let touching =
             [["lining_faces", "disc_faces"], ["lining_backs", "plate_faces"], ["seats", "plate_backs"]];
-        let diagnosis = diagnose_apart(&brake, &touching);
+        let diagnosis = diagnose_apart(&brake, &touching, Default::default());
         assert!(diagnosis.faults.0.is_empty(), "{diagnosis:?}");
         let measure =
             |name: &str| Info::of(&brake).regions.iter().find(|r| r.name == name).map_or(0.0, |r| r.measure);

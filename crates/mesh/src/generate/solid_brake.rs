@@ -110,7 +110,7 @@ mod tests {
     #[test]
     fn the_brake_is_in_two_pieces_that_touch() {
         let brake = solid_brake().unwrap();
-        let diagnosis = diagnose_apart(&brake, &[["pad_face", "disc_face"]]);
+        let diagnosis = diagnose_apart(&brake, &[["pad_face", "disc_face"]], Default::default());
         assert!(diagnosis.faults.0.is_empty() && diagnosis.warnings.is_empty(), "{diagnosis:?}");
         let area = |name: &str| Info::of(&brake).regions.iter().find(|r| r.name == name).unwrap().measure;
         assert!(

@@ -78,7 +78,7 @@ fn equations_go_over_lines_and_sets() {
 #[test]
 fn mpcs_are_rigid_or_equations() {
     let deck = bricks(
-        "*NSET, NSET=A\n1, 2\n*NODE\n20, 0., 0., 0.\n*MPC\nBEAM, A, 9\nPIN, 3, 4\nTIE, 1, 20\nTIE, 5, 6\nPLANE, 1, 2\n",
+        "*NSET, NSET=A\n1, 2\n*NODE\n20, 0., 0., 0.\n*MPC\nBEAM, A, 9\nPIN, 3, 4\nTIE, 1, 20\nTIE, 5, 6\nPLANE, 1, 2\nLINK, 1, 2\n",
     );
     let couplings: Vec<_> = deck
         .couplings
@@ -88,7 +88,9 @@ fn mpcs_are_rigid_or_equations() {
         })
         .collect();
     assert_eq!(couplings, [(vec![1, 2], 9, CouplingKind::Rigid), (vec![1], 20, CouplingKind::Rigid)]);
-    assert_eq!(deck.equations.len(), 6);
+    assert_eq!(deck.equations.len(), 7);
+    // Along the line between the nodes.
+    assert!(deck.equations[6].terms.iter().all(|(_, dof, _)| *dof == deck.equations[6].terms[0].1));
     assert_eq!(deck.equations[2].terms, [(2, 2, 1.0), (3, 2, -1.0)]);
     assert_eq!(notes(&deck), [(Weight::Matters, "*MPC, PLANE", 26), (Weight::Matters, "*MPC, TIE", 25)]);
 }
