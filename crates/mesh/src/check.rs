@@ -531,12 +531,12 @@ mod tests {
 
         let mut mesh = plate();
         let mut far = plate();
-        far.nodes.iter_mut().for_each(|p| p[0] += 10.0);
+        far.nodes.iter_mut().for_each(|p| p[0] += 2.0);
         mesh.append(far);
         let moved = mesh.regions.remove(5).elements;
         mesh.regions[0].elements.extend(moved);
         let text = Faults(diagnose(&mesh).warnings).to_string();
-        assert!(text.contains("`plate`: found 2 pieces"), "{text}");
+        assert!(text.contains("`plate`: found 2 pieces that touch"), "{text}");
     }
 
     #[test]
