@@ -18,6 +18,7 @@ mod nastran;
 mod place;
 mod skin;
 mod text;
+mod turn;
 mod universal;
 mod written;
 

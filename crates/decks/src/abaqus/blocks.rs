@@ -274,9 +274,15 @@ pub(super) fn split(text: &str) -> impl Iterator<Item = &str> {
     .map(str::trim)
 }
 
+/// Options that old decks abbreviate.
+const ABBREVIATED: [(&str, &str); 2] = [("GEN", "GENERATE"), ("PERT", "PERTURBATION")];
+
 fn option(text: &str) -> Option<BlockOption> {
     let (name, value) = text.split_once('=').unwrap_or((text, ""));
-    let name = capitals(name);
+    let mut name = capitals(name);
+    if let Some((_, whole)) = ABBREVIATED.iter().find(|(short, _)| *short == name) {
+        name = (*whole).to_string();
+    }
     (!name.is_empty()).then(|| BlockOption { name, value: unquoted(value).to_string() })
 }
 

@@ -3,7 +3,7 @@
 use super::blocks;
 use super::reader::Reader;
 use super::space::{Item, Space};
-use crate::deck::{Place, Surface};
+use crate::deck::{Node, Place, Surface};
 use std::collections::{BTreeMap, HashSet};
 
 /// The most dots of a name that may stand before what is within an instance.
@@ -120,13 +120,7 @@ impl Reader {
     pub fn settle_sets(&mut self) {
         for space in &mut self.spaces {
             for set in &mut space.node_sets.all {
-                if set.unsorted {
-                    let mut seen = HashSet::new();
-                    set.members.retain(|node| seen.insert(*node));
-                } else {
-                    set.members.sort_unstable_by_key(|node| (self.deck.nodes[*node].number, *node));
-                    set.members.dedup();
-                }
+                each_once(&self.deck.nodes, &mut set.members, set.unsorted);
             }
             for set in &mut space.element_sets.all {
                 set.items.sort_unstable();
@@ -139,4 +133,15 @@ impl Reader {
 /// What has a number.
 fn numbered<T: Copy>(all: &BTreeMap<u64, T>, number: &str) -> Option<Vec<T>> {
     number.parse().ok().and_then(|number: u64| all.get(&number)).map(|one| vec![*one])
+}
+
+/// Keeps each node of a set once: by numbers, or in the order in which they stand if the set is unsorted.
+pub(super) fn each_once(all: &[Node], members: &mut Vec<usize>, unsorted: bool) {
+    if unsorted {
+        let mut seen = HashSet::new();
+        members.retain(|node| seen.insert(*node));
+    } else {
+        members.sort_unstable_by_key(|node| (all[*node].number, *node));
+        members.dedup();
+    }
 }

@@ -14,51 +14,56 @@ impl Reader {
     /// *NODE: number, coordinates.
     pub fn nodes(&mut self, space: usize, found: Found<'_>) {
         let mut read = Vec::new();
-        let system = found.option("SYSTEM").unwrap_or("R").to_uppercase();
         for row in found.rows() {
             let (Some(number), Some(given)) =
                 (self.label(row.place, row.cell(0)), self.numbers::<3>(&row, 1))
             else {
                 continue;
             };
-            let position = match system.as_str() {
-                "C" => cylindrical(given),
-                "S" => spherical(given),
-                _ => given,
-            };
-            let own = &mut self.spaces[space];
-            let position = own.placement.map_or(position, |placement| placement.place(position));
-            if !position.iter().all(|x| x.is_finite()) {
-                self.files.fault(
-                    row.place,
-                    format!("node {number} at {position:?}"),
-                    "a place that is finite",
-                );
-                continue;
-            }
-            match own.nodes.entry(number) {
-                Entry::Vacant(free) => {
-                    free.insert(self.deck.nodes.len());
-                    read.push(self.deck.nodes.len());
-                    self.deck.nodes.push(Node { number, position, place: row.place });
-                }
-                Entry::Occupied(taken) => {
-                    let first = &self.deck.nodes[*taken.get()];
-                    read.push(*taken.get());
-                    if first.position == position {
-                        let why = "nodes that stand there twice, at one place";
-                        self.deck.ledger.note(Weight::Nothing, "*NODE", why, row.place);
-                    } else {
-                        let found = format!("a second node {number} at another place");
-                        let expected =
-                            format!("one node of each number; the first stands in line {}", first.place.line);
-                        self.files.fault(row.place, found, expected);
-                    }
-                }
-            }
+            let position = cartesian(given, found.option("SYSTEM"));
+            let placement = self.spaces[space].placement;
+            let position = placement.map_or(position, |placement| placement.place(position));
+            read.extend(self.put_node(space, found, row.place, number, position, 0.0));
         }
         if let Some(name) = found.option("NSET") {
             self.spaces[space].node_set(name).members.extend(read);
+        }
+    }
+
+    /// A node, which may stand there already: within this distance it is noted as the same one, else it is a fault.
+    pub fn put_node(
+        &mut self,
+        space: usize,
+        found: Found<'_>,
+        place: Place,
+        number: u64,
+        position: [f64; 3],
+        within: f64,
+    ) -> Option<usize> {
+        if !position.iter().all(|x| x.is_finite()) {
+            self.files.fault(place, format!("node {number} at {position:?}"), "a place that is finite");
+            return None;
+        }
+        match self.spaces[space].nodes.entry(number) {
+            Entry::Vacant(free) => {
+                free.insert(self.deck.nodes.len());
+                self.deck.nodes.push(Node { number, position, place });
+                Some(self.deck.nodes.len() - 1)
+            }
+            Entry::Occupied(taken) => {
+                let first = &self.deck.nodes[*taken.get()];
+                if (0..3).all(|k| (first.position[k] - position[k]).abs() <= within) {
+                    let why = "nodes that stand there twice, at one place";
+                    let what = format!("*{}", found.block.keyword);
+                    self.deck.ledger.note(Weight::Nothing, what, why, place);
+                } else {
+                    let found = format!("a second node {number} at another place");
+                    let expected =
+                        format!("one node of each number; the first stands in line {}", first.place.line);
+                    self.files.fault(place, found, expected);
+                }
+                Some(*taken.get())
+            }
         }
     }
 
@@ -117,7 +122,7 @@ impl Reader {
             cells.truncate(n_nodes + 1);
             let Some(nodes) = self.element_nodes(space, place, &type_name, &cells, n_nodes) else { continue };
             if let Some(known) = self.spaces[space].elements.get(&number).copied() {
-                read.extend(self.again(place, &type_name, number, known, &nodes));
+                read.extend(self.again(found, place, &type_name, number, known, &nodes));
                 continue;
             }
             let item = match &shape {
@@ -140,7 +145,7 @@ impl Reader {
                 }
                 None => {
                     let Some(type_name) = points::type_named(&type_name) else { continue };
-                    self.points.push(PointElement { type_name, nodes });
+                    self.points.push(PointElement { number, type_name, nodes });
                     Item::Point(self.points.len() - 1)
                 }
             };
@@ -153,8 +158,9 @@ impl Reader {
     }
 
     /// An element whose number is taken: a note if it is the same one, else a fault.
-    fn again(
+    pub fn again(
         &mut self,
+        found: Found<'_>,
         place: Place,
         type_name: &str,
         number: u64,
@@ -178,7 +184,8 @@ impl Reader {
         };
         if same {
             let why = "elements that stand there twice, on the same nodes";
-            self.deck.ledger.note(Weight::Nothing, "*ELEMENT", why, place);
+            let what = format!("*{}", found.block.keyword);
+            self.deck.ledger.note(Weight::Nothing, what, why, place);
             return Some(known);
         }
         self.files.fault(place, format!("a second element {number}"), "one element of each number");
@@ -253,6 +260,15 @@ fn shape_of(type_name: &str) -> Option<(String, [usize; 2])> {
         let base = type_name.strip_suffix('T')?;
         known(base).map(|n| (base.to_string(), n))
     })
+}
+
+/// The coordinates that SYSTEM gives, as Cartesian ones.
+pub(super) fn cartesian(given: [f64; 3], system: Option<&str>) -> [f64; 3] {
+    match system.unwrap_or_default() {
+        "C" | "c" => cylindrical(given),
+        "S" | "s" => spherical(given),
+        _ => given,
+    }
 }
 
 /// (r, θ in degrees, z).

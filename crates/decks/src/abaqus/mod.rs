@@ -10,6 +10,7 @@ mod constraints;
 mod contacts;
 mod couplings;
 mod frames;
+mod generate;
 mod keywords;
 mod loads;
 mod lookup;
@@ -67,6 +68,7 @@ pub(crate) fn read(path: &Path, files: &mut Files) -> Result<Deck> {
         step: None,
         steps_with_loads: 0,
         members_left: 0,
+        generated: 0,
     };
     if blocks.blocks.is_empty() {
         reader.files.fault(
@@ -80,9 +82,14 @@ pub(crate) fn read(path: &Path, files: &mut Files) -> Result<Deck> {
     }
     reader.deck.lost.clone_from(&blocks.lost);
     let own = reader.instances_of(&blocks);
+    let needs_sets = own.iter().any(|(_, block)| generate::needs_sets(block));
     for phase in Phase::ALL {
         for (space, block) in &own {
-            reader.read_in(phase, *space, Found { blocks: &blocks, block });
+            let found = Found { blocks: &blocks, block };
+            if needs_sets {
+                reader.set_so_far(phase, *space, found);
+            }
+            reader.read_in(phase, *space, found);
         }
         if phase == Phase::Sets {
             reader.settle_sets();

@@ -105,25 +105,29 @@ impl Reader {
             );
         }
         self.instances.entry(&name, || space);
-        let placement = self.placement(found);
+        let placement = self.placement(found, 1.0);
         self.spaces.push(Space { name, placement, ..Space::default() });
         space
     }
 
-    /// The first line of data is a translation; the second two points of an axis and an angle in degrees about it, after the translation.
-    fn placement(&mut self, found: Found<'_>) -> Option<Placement> {
+    /// The first line of data is a translation; the second two points of an axis and an angle in degrees about it, after the translation,
+    /// as many times.
+    pub fn placement(&mut self, found: Found<'_>, times: f64) -> Option<Placement> {
         let mut rows = found.rows();
         let translation = self.numbers::<3>(&rows.next()?, 0)?;
         let one = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         let Some(row) = rows.next() else { return Some(Placement { rotation: one, translation }) };
         let [ax, ay, az, bx, by, bz, angle] = self.numbers::<7>(&row, 0)?;
+        if angle == 0.0 {
+            return Some(Placement { rotation: one, translation });
+        }
         let axis = [bx - ax, by - ay, bz - az];
         let length = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
         if length == 0.0 || !length.is_finite() {
             self.files.fault(row.place, "two points of an axis that are one", "two points");
             return None;
         }
-        let rotation = rotation(axis.map(|x| x / length), angle.to_radians());
+        let rotation = rotation(axis.map(|x| x / length), times * angle.to_radians());
         let turn = Placement { rotation, translation: [0.0; 3] };
         // R (x + t − a) + a.
         let moved: [f64; 3] = std::array::from_fn(|i| translation[i] - [ax, ay, az][i]);

@@ -85,6 +85,8 @@ pub(super) struct Reader {
     pub steps_with_loads: usize,
     /// How many members of sets may still be named: sets of sets, and sets that are named again and again, grow beyond the file.
     pub members_left: usize,
+    /// How many nodes and elements were generated.
+    pub generated: usize,
 }
 
 impl Reader {

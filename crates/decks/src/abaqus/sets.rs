@@ -100,7 +100,7 @@ impl Reader {
         }
     }
 
-    /// What is there of first, first + step … last.
+    /// What is there of first, first + step … last, noted where it is nothing.
     fn range<T: Copy>(
         &mut self,
         row: &Row<'_>,
@@ -108,15 +108,26 @@ impl Reader {
         keyword: &str,
         numbered: fn(&Space) -> &BTreeMap<u64, T>,
     ) -> Vec<T> {
-        let Some([first, last, step]) = self.range_numbers(row) else { return Vec::new() };
+        let Some(found) = self.members_in(row, space, numbered) else { return Vec::new() };
+        if found.is_empty() {
+            self.missing(keyword, row.place);
+        }
+        found
+    }
+
+    /// What is there of first, first + step … last.
+    pub fn members_in<T: Copy>(
+        &mut self,
+        row: &Row<'_>,
+        space: usize,
+        numbered: fn(&Space) -> &BTreeMap<u64, T>,
+    ) -> Option<Vec<T>> {
+        let [first, last, step] = self.range_numbers(row)?;
         let inside = || numbered(&self.spaces[space]).range(first..=last);
         let n_inside = inside().count();
         let of_step = |(number, _): &(&u64, &T)| (**number - first).is_multiple_of(step);
         let found: Vec<T> = inside().filter(of_step).map(|(_, item)| *item).collect();
-        if found.is_empty() {
-            self.missing(keyword, row.place);
-        }
-        if self.may_name(n_inside, row.place) { found } else { Vec::new() }
+        self.may_name(n_inside, row.place).then_some(found)
     }
 
     /// Notes a member of a set that is not in the file, as these programs do.

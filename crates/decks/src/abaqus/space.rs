@@ -62,6 +62,11 @@ impl Placement {
         std::array::from_fn(|i| turned[i] + self.translation[i])
     }
 
+    /// The point that comes to a place.
+    pub fn back(&self, y: [f64; 3]) -> [f64; 3] {
+        std::array::from_fn(|i| (0..3).map(|j| self.rotation[j][i] * (y[j] - self.translation[j])).sum())
+    }
+
     /// The direction of a vector.
     pub fn turn(&self, x: [f64; 3]) -> [f64; 3] {
         std::array::from_fn(|i| (0..3).map(|j| self.rotation[i][j] * x[j]).sum())

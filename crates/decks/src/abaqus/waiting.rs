@@ -28,6 +28,7 @@ pub(super) struct PendingContact {
 /// A mass, a spring, a dashpot or a node of a distributing coupling.
 #[derive(Debug)]
 pub(super) struct PointElement {
+    pub number: u64,
     pub type_name: &'static str,
     pub nodes: Vec<usize>,
 }

@@ -4,9 +4,9 @@ use super::axis::Axis;
 use super::fields::Fields;
 use super::model::Model;
 use super::table::Table;
-use super::turn;
 use crate::deck::{Element, Place};
 use crate::ledger::Weight;
+use crate::turn;
 use std::collections::BTreeMap;
 use stridor_mesh::{CellKind, Program};
 

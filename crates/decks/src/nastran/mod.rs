@@ -34,7 +34,6 @@ mod surfaces;
 mod table;
 #[cfg(test)]
 mod tests;
-mod turn;
 mod unread;
 mod write;
 

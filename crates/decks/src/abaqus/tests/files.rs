@@ -30,10 +30,10 @@ fn writing_makes_no_difference() {
 #[test]
 fn what_is_not_read_is_listed_with_its_line() {
     let deck =
-        bricks("*NODE PRINT\nU\n*NEWTHING, A=B\n1, 2\n*NGEN\n1, 5, 1\n*MASS, ELSET=EALL, TYPE=X\n1.\n*\n");
+        bricks("*NODE PRINT\nU\n*NEWTHING, A=B\n1, 2\n*SYSTEM\n1, 5, 1\n*MASS, ELSET=EALL, TYPE=X\n1.\n*\n");
     let expected = [
         (Weight::Matters, "*NEWTHING", 19),
-        (Weight::Matters, "*NGEN", 21),
+        (Weight::Matters, "*SYSTEM", 21),
         (Weight::Perhaps, "*MASS", 23),
         (Weight::Perhaps, "*MASS, TYPE", 23),
         (Weight::Nothing, "*", 25),

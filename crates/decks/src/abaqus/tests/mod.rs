@@ -4,6 +4,7 @@ mod constraints;
 mod contacts;
 mod faults;
 mod files;
+mod generate;
 mod loads;
 mod materials;
 mod mesh;

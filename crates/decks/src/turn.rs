@@ -1,7 +1,7 @@
-//! Solids whose nodes are counted the other way round, as NASTRAN allows.
+//! Cells whose nodes are counted the other way round, as NASTRAN allows and as a mirror leaves them.
 
+use stridor_mesh::CellKind;
 use stridor_mesh::quality::{cross, dot, minus};
-use stridor_mesh::{CellKind, CellShape};
 
 /// The volume of a solid of straight edges through its sides, ∮ x·n dA/3, negative where its nodes are counted the other way round.
 fn signed_volume(kind: CellKind, corners: &[[f64; 3]]) -> f64 {
@@ -15,7 +15,7 @@ fn signed_volume(kind: CellKind, corners: &[[f64; 3]]) -> f64 {
 }
 
 /// Turns the nodes of a solid round if its volume is negative.
-pub(super) fn right_handed(
+pub(crate) fn right_handed(
     kind: CellKind,
     nodes: &mut Vec<usize>,
     position: impl Fn(usize) -> [f64; 3],
@@ -24,25 +24,20 @@ pub(super) fn right_handed(
     if kind.dimension() != 3 || signed_volume(kind, &corners) >= 0.0 {
         return false;
     }
-    // A mirror of the reference cell: where each corner goes.
-    let mirror: &[u8] = match kind.table().shape {
-        CellShape::Tetrahedron => &[0, 2, 1, 3],
-        CellShape::Wedge => &[0, 2, 1, 3, 5, 4],
-        CellShape::Pyramid => &[0, 3, 2, 1, 4],
-        _ => &[0, 3, 2, 1, 4, 7, 6, 5],
+    *nodes = mirrored(kind, nodes);
+    true
+}
+
+/// The nodes of a cell that is mirrored in an order that is not: local directions 1 and 2 exchanged, which brings each kind but a line, which
+/// stays as it is, onto itself.
+pub(crate) fn mirrored<T: Copy>(kind: CellKind, nodes: &[T]) -> Vec<T> {
+    let places = kind.reference_coordinates();
+    let from = |[x, y, z]: &[f64; 3]| {
+        let wanted = [*y, *x, *z];
+        places.iter().position(|other| (0..3).all(|k| (other[k] - wanted[k]).abs() < 1e-9))
     };
-    let middles = kind.table().middles;
-    let sorted = |of: &mut dyn Iterator<Item = u8>| {
-        let mut of: Vec<u8> = of.collect();
-        of.sort_unstable();
-        of
-    };
-    let from = |node: &&[u8]| {
-        let wanted = sorted(&mut node.iter().map(|corner| mirror[usize::from(*corner)]));
-        middles.iter().position(|other| sorted(&mut other.iter().copied()) == wanted)
-    };
-    let turned: Option<Vec<usize>> = middles.iter().map(|node| Some(nodes[from(node)?])).collect();
-    turned.map(|turned| *nodes = turned).is_some()
+    let order: Option<Vec<usize>> = places.iter().map(from).collect();
+    order.map_or_else(|| nodes.to_vec(), |order| order.into_iter().map(|place| nodes[place]).collect())
 }
 
 #[cfg(test)]
