@@ -33,7 +33,7 @@ const SPANNED_AT_LEAST: f64 = 1.4;
 
 /// The springs of more contact points are part of the stiffness before real modes are sought: the modes of bodies that contact
 /// holds together have little in common with those of the bodies apart.
-const MANY_POINTS: usize = 80;
+pub const MANY_POINTS: usize = 80;
 
 /// Whether the real modes that span the complex ones of a case are those with its contact closed. Modal damping is that of the structure
 /// alone, and so are its modes.

@@ -62,11 +62,13 @@ pub fn growth_without_split(
 fn without_split(prepared: &Prepared, hz: f64, observer: &dyn Observer) -> Result<Option<StiffnessChange>> {
     let mut change = None;
     for (name, disc) in prepared.discs() {
-        if !is_of_revolution(prepared, name, &disc) {
+        // What falls upon itself when turned by one element is round, too, and that is soon seen.
+        let even = is_even(prepared, name, &disc);
+        if !is_of_revolution(prepared, name, &disc, even) {
             continue;
         }
         let change = change.get_or_insert_with(StiffnessChange::default);
-        if is_even(prepared, name, &disc) {
+        if even {
             continue;
         }
         let alone = ModesAnalysis {
@@ -122,7 +124,7 @@ fn is_even(prepared: &Prepared, name: &str, disc: &Disc) -> bool {
     prepared.model.part(name).is_some_and(|part| is_even_around(part, &prepared.model.nodes, &axis_of(disc)))
 }
 
-fn is_of_revolution(prepared: &Prepared, name: &str, disc: &Disc) -> bool {
+fn is_of_revolution(prepared: &Prepared, name: &str, disc: &Disc, even: bool) -> bool {
     let axis = axis_of(disc);
     let isotropic =
         prepared.model.part(name).is_some_and(|part| part.kind.material().is_isotropic_about(axis.direction));
@@ -134,7 +136,7 @@ fn is_of_revolution(prepared: &Prepared, name: &str, disc: &Disc) -> bool {
         transport: false,
         spin_stiffness: false,
     };
-    isotropic && has_round_rim(disc) && deviation(&prepared.model, &rotation).is_none()
+    isotropic && has_round_rim(disc) && (even || deviation(&prepared.model, &rotation).is_none())
 }
 
 /// Whether the outermost nodes of all sectors are on one circle; [`deviation`] allows for as much as coarse faces are off one.

@@ -64,12 +64,16 @@ impl ReportSection {
         self
     }
 
-    /// With tables; of one without rows only what is written below it.
+    /// With tables; of one without rows only what is written below it, after its title.
     #[must_use]
     pub(super) fn tables(mut self, display: Display, tables: impl IntoIterator<Item = ReportTable>) -> Self {
         for table in tables {
             match table.rows.is_empty() {
-                true => self.items.extend(table.notes.into_iter().map(Item::Words)),
+                true if table.notes.is_empty() => {}
+                true => {
+                    let title = matches!(display, Display::Titled).then_some(table.caption);
+                    self.items.extend(title.into_iter().chain(table.notes).map(Item::Words));
+                }
                 false => self.items.push(Item::Table(table, display)),
             }
         }
@@ -119,8 +123,11 @@ mod tests {
         let empty = ReportTable { notes: vec!["none".into()], ..ReportTable::new("x", &["a"]) };
         let mut full = ReportTable::new("y", &["a"]);
         full.row(vec!["1".into()], false);
-        let section = ReportSection::new("x").tables(Display::Titled, [empty, full]);
-        assert!(matches!(&section.items[..], [Item::Words(words), Item::Table(..)] if words == "none"));
+        let nothing = ReportTable::new("z", &["a"]);
+        let section = ReportSection::new("s").tables(Display::Titled, [empty, full, nothing]);
+        assert!(
+            matches!(&section.items[..], [Item::Words(title), Item::Words(words), Item::Table(..)] if title == "x" && words == "none")
+        );
     }
 
     #[test]
