@@ -141,6 +141,7 @@ pub fn complex_result<'a>(
         dofs: prepared.assembled.dofs.clone(),
         participation,
         real_modes: labels,
+        contact_closed: closed.is_some(),
         discs: Vec::new(),
         shares: None,
         without_split: Vec::new(),

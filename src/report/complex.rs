@@ -38,6 +38,9 @@ fn table(result: &ComplexResult) -> ReportTable {
             power(largest(|mode| mode.eigenvalue_error)),
             significant(largest(|mode| mode.condition), 2)
         ));
+        if result.contact_closed {
+            table.notes.push("The real modes are those with the contact closed as in steady sliding.".into());
+        }
         table.notes.extend(result.modal_damping_below_hz.map(|hz| {
             format!(
                 "Modal damping: of the real modes up to {} Hz (`damping.modal_below`); modes above have none, and σ depends on that limit as far as they take part.",

@@ -18,12 +18,13 @@ pub struct ComplexResult {
     pub modes: ComplexModes,
     /// From the free degrees of freedom, on which the vectors of the modes stand, to the nodes.
     pub dofs: Arc<DofMap>,
-    /// A few words on the real modes that take part in each mode: `61 % disc (0,1), 22 % (3,0)`. Of more than 80 contact points they are those with the
-    /// contact closed, where no damping is given by mode.
+    /// A few words on the real modes that take part in each mode: `61 % disc (0,1), 22 % (3,0)`.
     pub participation: Vec<String>,
     /// Names of the real modes, in the order that [`ComplexMode::participation`](crate::stability::ComplexMode)
     /// counts them: `disc (0, 1)`, `mode 1718 Hz`.
     pub real_modes: Vec<String>,
+    /// Whether these are the real modes with the contact closed as in steady sliding, and not those of the structure alone.
+    pub contact_closed: bool,
     /// The name of the motion of the disc in each mode, where it moves and has one.
     pub discs: Vec<Option<DiscModeName>>,
     /// Shares of the parts in each mode; `None` of imported matrices.
@@ -258,6 +259,12 @@ impl Describe for ComplexResult {
             .value("not_accurate", "1", "modes that are not accurate", count(Verdict::Inaccurate))
             .value("subspace_dimension", "1", "dimension of the subspace", self.modes.subspace_dimension)
             .value("refinements", "1", "steps of refinement", self.modes.refinements)
+            .value(
+                "contact_closed",
+                "1",
+                "whether the real modes that take part are those with the contact closed",
+                self.contact_closed,
+            )
             .value(
                 "modal_damping_below_hz",
                 "Hz",

@@ -163,6 +163,7 @@ mod tests {
             dofs: Arc::new(DofMap::given(vec![], vec![])),
             participation: vec![],
             real_modes: vec![],
+            contact_closed: false,
             discs: vec![],
             shares: None,
             without_split: vec![],
