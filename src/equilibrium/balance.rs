@@ -42,6 +42,18 @@ pub(super) fn states(pairs: &[ContactPair], penetrations: &[f64], u: &[f64]) -> 
     points.zip(penetrations).map(at).collect()
 }
 
+/// Each pair with the states of its points.
+pub fn by_pair<'a>(
+    pairs: &'a [ContactPair],
+    mut states: &'a [PointState],
+) -> impl Iterator<Item = (&'a ContactPair, &'a [PointState])> {
+    pairs.iter().map(move |pair| {
+        let (own, others) = states.split_at(pair.points.len());
+        states = others;
+        (pair, own)
+    })
+}
+
 /// ‖x‖₂.
 pub(super) fn norm_2(x: &[f64]) -> f64 {
     x.iter().map(|v| v * v).sum::<f64>().sqrt()

@@ -1,5 +1,6 @@
 //! What steady sliding needs, and what a state must not have.
 
+use super::balance::by_pair;
 use super::{PointState, SteadyOptions};
 use crate::error::{Error, Fault, Faults, Result};
 use crate::numbers::significant;
@@ -53,10 +54,7 @@ pub(super) fn check_contact(
     points: &[PointState],
     options: &SteadyOptions,
 ) -> Result<()> {
-    let mut first = 0;
-    for (pair, approach) in pairs.iter().zip(approach) {
-        let states = &points[first..first + pair.points.len()];
-        first += pair.points.len();
+    for ((pair, states), approach) in by_pair(pairs, points).zip(approach) {
         let deepest = states.iter().map(|s| s.penetration).fold(f64::NEG_INFINITY, f64::max);
         if states.iter().all(|s| s.forces.normal == 0.0) && !pair.is_bilateral() {
             let gaps = || pair.points.iter().map(|point| point.gap);

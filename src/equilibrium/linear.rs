@@ -118,6 +118,18 @@ pub fn tangent_stiffness<'a>(system: &'a System, displacement: &[f64]) -> Result
     Ok(Cow::Owned(add_scaled(&[(1.0, &system.structure.stiffness), (1.0, &geometric)])))
 }
 
+/// The structure at a steady state without its contacts: K, or K + K_σ(u₀).
+///
+/// # Errors
+/// A geometric stiffness that cannot be worked out.
+pub fn preloaded_structure<'a>(system: &'a System, steady: &SteadySliding) -> Result<Cow<'a, Structure>> {
+    let structure = &system.structure;
+    Ok(match tangent_stiffness(system, &steady.displacement)? {
+        Cow::Borrowed(_) => Cow::Borrowed(structure),
+        Cow::Owned(stiffness) => Cow::Owned(Structure { stiffness: stiffness.into(), ..structure.clone() }),
+    })
+}
+
 /// The structure at steady sliding with its contact closed and frictionless: K (+ K_σ) + Σ ∂N/∂δ g gᵀ, with the springs of points that
 /// stick, for real modes of the rig in contact. Those modes need an inertia count of the closed structure, so here, and only here, the
 /// springs of the contact are added to a copy of K.

@@ -3,6 +3,7 @@
 use super::PointState;
 use super::no_state::{Reached, account, account_of_lost};
 use super::point_laws::{Fraction, Law, PointLaws};
+use crate::error::text::capital;
 use crate::error::{Error, Result};
 use crate::numbers::significant;
 use crate::progress::Observer;
@@ -151,8 +152,6 @@ fn failure<N: Newton>(
     }
     let (words, mut help): (Vec<String>, Vec<&str>) = seen.into_iter().unzip();
     help.dedup();
-    let mut help = help.join("; ");
-    help[..1].make_ascii_uppercase();
     Error::analysis(
         "steady sliding",
         format!(
@@ -160,14 +159,8 @@ fn failure<N: Newton>(
             words.join("; "),
             capital(&why)
         ),
-        help,
+        capital(&help.join("; ")),
     )
-}
-
-fn capital(words: &str) -> String {
-    let mut words = words.to_string();
-    words[..1].make_ascii_uppercase();
-    words
 }
 
 /// Load steps that came to an end before the whole load.

@@ -20,14 +20,16 @@ mod steady;
 #[cfg(test)]
 mod tests;
 
+pub use balance::by_pair;
 pub use condensed::closed_springs;
 #[cfg(test)]
 pub(crate) use condensed::closed_stiffness;
 pub use linear::{
     ContactBlock, LinearContact, Spring, closed_structure, contact_force, directions, linearize,
-    linearize_points, tangent_stiffness,
+    linearize_points, preloaded_structure, tangent_stiffness,
 };
 pub use nearby::Nearby;
+pub use no_state::{EDGE, carrying_share};
 pub use solver::{FEW_POINTS, SteadySolver};
 pub use steady::{check, solve_steady, steady_sliding};
 

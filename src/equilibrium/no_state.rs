@@ -7,6 +7,7 @@
 //! bounds where that part is one, or an approach falls to nothing at a given N: the contact locks.
 
 use super::PointState;
+use super::balance::by_pair;
 use crate::numbers::significant;
 use crate::system::{Closing, ContactPair};
 
@@ -21,37 +22,28 @@ pub(super) struct Reached {
 
 /// The part of the closed points of a pair that is at its limit from which on friction does not hold the body.
 const AT_THE_LIMIT: f64 = 1.0 / 3.0;
-/// The part of its weight on which a pair carries when it tips.
-const EDGE: f64 = 0.25;
+/// The part of its weight on which a pair carries when it stands on an edge.
+pub const EDGE: f64 = 0.25;
 /// How many times as much of the load a contact carries as at first, when friction drives it in.
 const DRIVEN: f64 = 3.0;
 
 /// What is seen in the state at which an iteration ended, where the friction of a pair that does not slide is used up, and what to do.
 pub(super) fn account_of_lost(pairs: &[ContactPair], points: &[PointState]) -> Vec<(String, &'static str)> {
-    let mut rest = points;
-    let each = pairs.iter().map(|pair| {
-        let (own, others) = rest.split_at(pair.points.len());
-        rest = others;
-        if pair.sticks() { slides_away(pair, own) } else { Vec::new() }
-    });
-    each.flatten().collect()
+    let held = by_pair(pairs, points).filter(|(pair, _)| pair.sticks());
+    held.flat_map(|(pair, own)| slides_away(pair, own)).collect()
 }
 
 /// What is seen, and what to do; empty where nothing is. `first` and `last` are the states that were found in load steps.
 pub(super) fn account(pairs: &[ContactPair], first: &Reached, last: &Reached) -> Vec<(String, &'static str)> {
     let mut all = Vec::new();
-    let mut begin = 0;
-    for (k, pair) in pairs.iter().enumerate() {
-        let own = begin..begin + pair.points.len();
-        begin = own.end;
-        let (before, now) = (&first.points[own.clone()], &last.points[own]);
-        let approach = last.approach.get(k).copied().unwrap_or(0.0);
-        let seen = if pair.sticks() {
-            slides_away(pair, now)
+    let both = by_pair(pairs, &first.points).zip(by_pair(pairs, &last.points)).zip(&last.approach);
+    for (((pair, before), (_, now)), approach) in both {
+        if pair.sticks() {
+            all.extend(slides_away(pair, now));
         } else {
-            tips(pair, now).into_iter().chain(locks(pair, approach, [(first, before), (last, now)])).collect()
-        };
-        all.extend(seen);
+            all.extend(tips(pair, now));
+            all.extend(locks(pair, *approach, [(first, before), (last, now)]));
+        }
     }
     all
 }
@@ -71,13 +63,18 @@ fn slides_away(pair: &ContactPair, points: &[PointState]) -> Vec<(String, &'stat
     vec![(found, help)]
 }
 
-/// A pair that carries on an edge.
-fn tips(pair: &ContactPair, points: &[PointState]) -> Option<(String, &'static str)> {
+/// The part of the weights of its points, their area on faces, on which a pair carries.
+pub fn carrying_share(pair: &ContactPair, points: &[PointState]) -> f64 {
     let weight = |closed: bool| {
         let those = pair.points.iter().zip(points).filter(|(_, state)| !closed || state.closed());
         those.map(|(point, _)| point.weight).sum::<f64>()
     };
-    let share = weight(true) / weight(false);
+    weight(true) / weight(false)
+}
+
+/// A pair that carries on an edge.
+fn tips(pair: &ContactPair, points: &[PointState]) -> Option<(String, &'static str)> {
+    let share = carrying_share(pair, points);
     (points.len() > 3 && share > 0.0 && share < EDGE).then(|| {
         let found = format!("`{}` carries on {} % of its points: its body tips", pair.name, significant(100.0 * share, 2));
         (found, "lower the friction, press nearer to the middle of the face, or support the body nearer to its face and against turning")
@@ -91,7 +88,7 @@ fn locks(
     [(first, before), (last, now)]: [(&Reached, &[PointState]); 2],
 ) -> Option<(String, &'static str)> {
     let force = |points: &[PointState]| points.iter().map(|point| point.forces.normal).sum::<f64>();
-    let touch = pair.points.iter().map(|point| point.gap).fold(f64::INFINITY, f64::min);
+    let touch = pair.least_gap();
     let driven = match pair.closing {
         Closing::Load(_) if approach < touch => {
             format!("which carries its load {} µm apart", significant(1e6 * (touch - approach), 3))

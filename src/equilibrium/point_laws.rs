@@ -178,7 +178,7 @@ fn first_approach(pair: &ContactPair, fraction: Fraction) -> f64 {
     };
     let carried =
         |a: f64| -> f64 { pair.points.iter().map(|p| respond(pair, p, a - p.gap, [0.0; 2]).0.normal).sum() };
-    let touch = pair.points.iter().map(|p| p.gap).fold(f64::INFINITY, f64::min);
+    let touch = pair.least_gap();
     let mut beyond = 1e-9;
     while carried(touch + beyond) < fraction * load && beyond < 1e6 {
         beyond *= 2.0;

@@ -33,29 +33,31 @@ const SPANNED_AT_LEAST: f64 = 1.4;
 
 /// The springs of more contact points are part of the stiffness before real modes are sought: the modes of bodies that contact
 /// holds together have little in common with those of the bodies apart.
-pub const MANY_POINTS: usize = 80;
+const MANY_POINTS: usize = 80;
 
-/// Whether the real modes that span the complex ones of a case are those with its contact closed. Modal damping is that of the structure
-/// alone, and so are its modes.
+/// Whether a case has so many contact points that its contact is closed before real modes are sought.
+pub fn closes_contact(prepared: &Prepared) -> bool {
+    prepared.system.points().nth(MANY_POINTS).is_some()
+}
+
+/// Whether the real modes that span the complex ones of a case are those with its contact closed, and no others are needed. Modal damping is
+/// that of the structure alone, and so are its modes.
 pub fn is_spanned_closed(prepared: &Prepared) -> bool {
     let damping = &prepared.case.damping;
-    prepared.system.points().nth(MANY_POINTS).is_some()
-        && damping.modal_ratio == 0.0
-        && damping.modal_ratios.is_empty()
+    closes_contact(prepared) && damping.modal_ratio == 0.0 && damping.modal_ratios.is_empty()
 }
 
 /// Modes of an analysis, with the band and the real modes that span it.
 pub struct BandModes {
     band: [f64; 2],
     basis: RealModes,
-    closed: Option<ClosedContact>,
     /// The modes.
     pub modes: ComplexModes,
     certificate: Option<Certificate>,
 }
 
-/// The complex modes at the steady state that the analysis asks for, and the system that they belong to (its modal damping in it).
-/// `basis` is the real modes of the whole where they are known already.
+/// The complex modes at the steady state that the analysis asks for, the system that they belong to (its modal damping in it) and, where real modes
+/// with the contact closed span them, that with its contact closed. `basis` is the real modes of the whole where they are known already.
 pub fn band_modes<'a>(
     (prepared, state): (&'a Prepared, &SteadySliding),
     cea: &CeaAnalysis,
@@ -63,18 +65,14 @@ pub fn band_modes<'a>(
     left_vectors: bool,
     clock: &mut Clock,
     observer: &dyn Observer,
-) -> Result<(BandModes, Cow<'a, System>)> {
+) -> Result<(BandModes, Cow<'a, System>, Option<ClosedContact>)> {
     let closed = match is_spanned_closed(prepared) {
         true => Some(ClosedContact::of(&prepared.system, state)?),
         false => None,
     };
     let (own, state) = closed.as_ref().map_or((&prepared.system, state), |c| (&c.system, &c.steady));
     let basis = basis.filter(|_| closed.is_none());
-    let structure = &own.structure;
-    let preloaded = match equilibrium::tangent_stiffness(own, &state.displacement)? {
-        Cow::Borrowed(_) => Cow::Borrowed(structure),
-        Cow::Owned(stiffness) => Cow::Owned(Structure { stiffness: stiffness.into(), ..structure.clone() }),
-    };
+    let preloaded = equilibrium::preloaded_structure(own, state)?;
     if basis.is_none() {
         check_damping_frequencies(&preloaded, prepared.case, cea.basis_below)?;
     }
@@ -83,7 +81,7 @@ pub fn band_modes<'a>(
     let mut problem =
         ComplexProblem { prepared, cea, left_vectors, system: &mut system, state, clock, observer };
     let nearest = cea.nearest.zip(cea.count).map(|(hz, count)| Nearest { hz, count, within: cea.band });
-    let mut found = match nearest {
+    let found = match nearest {
         Some(asked) => problem.nearest(&asked, &preloaded)?,
         None => {
             let basis = match basis {
@@ -94,15 +92,14 @@ pub fn band_modes<'a>(
                 }
             };
             let (modes, certificate) = problem.modes((&basis).into(), cea.band)?;
-            BandModes { band: cea.band, basis, closed: None, modes, certificate }
+            BandModes { band: cea.band, basis, modes, certificate }
         }
     };
     let system = match system {
         Cow::Owned(damped) => Cow::Owned(damped),
         Cow::Borrowed(_) => Cow::Borrowed(&prepared.system),
     };
-    found.closed = closed;
-    Ok((found, system))
+    Ok((found, system, closed))
 }
 
 /// Complex eigenvalues at the steady state, and the operating point that they belong to; `basis` is the real modes of the whole where they
@@ -115,8 +112,8 @@ pub fn complex_result<'a>(
     clock: &mut Clock,
     observer: &dyn Observer,
 ) -> Result<(ComplexResult, OperatingPoint<'a>)> {
-    let (found, system) = band_modes((prepared, &steady), cea, basis, left_vectors, clock, observer)?;
-    let BandModes { band, basis: real, closed, modes, certificate } = found;
+    let (found, system, closed) = band_modes((prepared, &steady), cea, basis, left_vectors, clock, observer)?;
+    let BandModes { band, basis: real, modes, certificate } = found;
     let asked = Band { hz: band, nearest: cea.nearest.zip(cea.count), left_vectors: false };
     let confirmation = match cea.confirm {
         true => Some(
@@ -224,7 +221,7 @@ impl ComplexProblem<'_, '_> {
                 self.modes(Structural { real: &basis, shifted: shifted.as_ref() }, band)?;
             match keep_nearest(&mut modes, asked, band) {
                 Some(wider) => (expected, least, start) = (wider, wider, shifted),
-                None => return Ok(BandModes { band, basis, closed: None, modes, certificate }),
+                None => return Ok(BandModes { band, basis, modes, certificate }),
             }
         }
     }

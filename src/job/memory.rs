@@ -1,7 +1,7 @@
 //! How much memory a run takes at its peak, worked out before it begins.
 
 use super::analyses::Selection;
-use super::complex::MANY_POINTS;
+use super::complex::closes_contact;
 use super::modes::real_modes_below;
 use super::prepared::Prepared;
 use super::states::keeps_the_structure;
@@ -178,7 +178,7 @@ pub fn expected_memory(prepared: &Prepared, selection: Selection) -> Result<Opti
         entries: pattern.compute_nnz(),
         fill,
         modes: modes.min(dofs as f64),
-        many_points: prepared.system.points().nth(MANY_POINTS).is_some(),
+        many_points: closes_contact(prepared),
     };
     let mut explored = None;
     let varied = SHARED.into_iter().filter(|analysis| selection.includes(analysis, case));

@@ -1,12 +1,12 @@
 //! Steady sliding of a case and the linear system about it.
 
 use super::prepared::Prepared;
-use crate::equilibrium::{SteadySliding, tangent_stiffness};
+use crate::equilibrium::{SteadySliding, preloaded_structure};
 use crate::error::Result;
 use crate::modal::{ModesWanted, RealModes, compute};
 use crate::progress::Observer;
 use crate::stability::ClosedContact;
-use crate::system::{Structure, System};
+use crate::system::System;
 use std::borrow::Cow;
 use std::sync::{Arc, OnceLock};
 
@@ -38,8 +38,7 @@ impl OperatingPoint<'_> {
         if let Some(open) = self.open.get() {
             return Ok(open);
         }
-        let stiffness = tangent_stiffness(&self.system, &self.steady.displacement)?.into_owned();
-        let structure = Structure { stiffness: stiffness.into(), ..self.system.structure.clone() };
+        let structure = preloaded_structure(&self.system, &self.steady)?;
         let below = ModesWanted::BelowHz(self.real.certificate.below_hz);
         let (open, _) = compute(&structure, below, observer)?;
         Ok(self.open.get_or_init(|| open))

@@ -38,8 +38,7 @@ fn nothing_touches(prepared: &Prepared, faults: &mut Faults) {
         if forced || closed || pair.is_bilateral() {
             return;
         }
-        let gap = pair.points.iter().map(|point| point.gap).fold(f64::INFINITY, f64::min);
-        apart.push((pair, approach, gap));
+        apart.push((pair, approach, pair.least_gap()));
     }
     for (pair, approach, gap) in apart {
         let place = format!("`contact.{}.approach`", dotted(&pair.name));

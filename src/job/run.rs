@@ -128,12 +128,9 @@ impl<'a, 'k> Run<'a, 'k> {
 
 fn steady_result(prepared: &Prepared, state: SteadySliding) -> SteadyResult {
     let system = &prepared.system;
-    let mut point = state.points.iter();
-    let pairs = system
-        .pairs
-        .iter()
-        .map(|pair| {
-            let load = point.by_ref().take(pair.points.len()).map(|p| p.forces.normal).sum();
+    let pairs = equilibrium::by_pair(&system.pairs, &state.points)
+        .map(|(pair, own)| {
+            let load = own.iter().map(|point| point.forces.normal).sum();
             (pair.name.clone(), load, pair.sliding_velocity)
         })
         .collect();

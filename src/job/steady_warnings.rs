@@ -1,7 +1,7 @@
 //! What to know of a steady state that was found: contacts that carry nothing, that friction drives in, that tip, or that are pressed too deep.
 
 use super::prepared::Prepared;
-use crate::equilibrium::{PointState, SteadySliding};
+use crate::equilibrium::{EDGE, PointState, SteadySliding, by_pair, carrying_share};
 use crate::numbers::significant;
 use crate::schema::dotted;
 use crate::system::{Closing, ContactPair};
@@ -12,20 +12,14 @@ pub(super) const SMALL_PENETRATION: f64 = 0.1;
 const NO_FORCE: f64 = 1e-9;
 /// A penetration below this part of the largest coordinate is rounding of the nodes: some 50 units in the last place.
 const NO_PENETRATION: f64 = 1e-14;
-/// The part of its area on which a face that fits its counter-face carries when it stands on an edge.
-const EDGE: f64 = 0.25;
 
 /// The warnings, pair by pair.
 pub(super) fn warnings(prepared: &Prepared, state: &SteadySliding) -> Vec<String> {
     let system = &prepared.system;
     let size = |x: &[f64]| x.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
-    let mut all: Vec<SteadyPair> = Vec::new();
-    let mut points = &state.points[..];
-    for (pair, approach) in system.pairs.iter().zip(&state.approach) {
-        let (own, rest) = points.split_at(pair.points.len());
-        points = rest;
-        all.push(SteadyPair { pair, approach: *approach, states: own });
-    }
+    let pairs = by_pair(&system.pairs, &state.points).zip(&state.approach);
+    let all: Vec<SteadyPair> =
+        pairs.map(|((pair, states), approach)| SteadyPair { pair, approach: *approach, states }).collect();
     let acting = all.iter().map(SteadyPair::normal_force).fold(size(&system.load), f64::max);
     let nodes = prepared.model.nodes.iter().chain(system.points().map(|(_, point)| &point.position));
     let length = nodes.map(|node| size(node)).fold(0.0, f64::max);
@@ -106,7 +100,7 @@ impl SteadyPair<'_> {
     /// Self-locking: ΣN = L at an approach at which the undeformed bodies are apart, though nothing but this pair presses them, so that it is
     /// friction that presses.
     fn driven_in(&self, alone: bool) -> Option<String> {
-        let touch = self.pair.points.iter().map(|point| point.gap).fold(f64::INFINITY, f64::min);
+        let touch = self.pair.least_gap();
         let Closing::Load(load) = self.pair.closing else { return None };
         (alone && self.approach < touch && self.friction() > 0.0 && !self.pair.is_bilateral()).then(|| {
             format!(
@@ -123,12 +117,7 @@ impl SteadyPair<'_> {
     fn on_an_edge(&self) -> Option<String> {
         let gaps = || self.pair.points.iter().map(|point| point.gap);
         let apart = gaps().fold(f64::NEG_INFINITY, f64::max) - gaps().fold(f64::INFINITY, f64::min);
-        let area = |closed: bool| {
-            let points =
-                self.pair.points.iter().zip(self.states).filter(|(_, state)| !closed || state.closed());
-            points.map(|(point, _)| point.weight).sum::<f64>()
-        };
-        let share = area(true) / area(false);
+        let share = carrying_share(self.pair, self.states);
         let fits = self.states.len() > 3 && apart <= 0.1 * self.deepest();
         (fits && share < EDGE && self.friction() > 0.0).then(|| {
             format!(

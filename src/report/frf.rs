@@ -7,6 +7,7 @@ use super::magnitude::{ResponseCurve, ResponsePanel, stacked};
 use super::section::{Display, Picture, ReportSection};
 use super::svg::{CHAIN, DASHED, DOTTED, Style, stroke};
 use super::table::{ReportTable, idle};
+use crate::error::text::capital;
 use crate::results::{FrfResponse, FrfResult, RunResults, file_name};
 
 /// A mode with less than this part of the largest product of shapes does not show.
@@ -85,11 +86,6 @@ fn caption(frf: &FrfResult) -> String {
         frf.excitation,
         frf.about
     )
-}
-
-fn capital(word: &str) -> String {
-    let mut letters = word.chars();
-    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }
 
 fn picture(frf: &FrfResult) -> Option<Picture> {

@@ -26,6 +26,11 @@ impl ContactPair {
         self.sliding_velocity * point.speed
     }
 
+    /// The least gap of its points \[m\]: the approach at which the undeformed bodies touch.
+    pub fn least_gap(&self) -> f64 {
+        self.points.iter().map(|point| point.gap).fold(f64::INFINITY, f64::min)
+    }
+
     /// Whether the bodies do not slide past each other: their points stick.
     pub fn sticks(&self) -> bool {
         self.sliding_velocity == 0.0

@@ -7,6 +7,8 @@ pub mod samples;
 use faer::Mat;
 use faer::linalg::solvers::Solve;
 use stridor::linalg::SparseMatrix;
+use stridor::mesh::generate::structured_box;
+use stridor::mesh::{CellKind, Mesh};
 use stridor::structure::{Material, RayleighDamping};
 
 /// E = 210 GPa, ν = 0.3, ρ = 7850 kg/m³.
@@ -19,6 +21,22 @@ pub fn steel() -> Material {
         rayleigh: RayleighDamping::default(),
         orthotropic: None,
     }
+}
+
+/// A box named `name` at a place, of a size [m] and as many cells; its faces are `name`, `between` and `x_min`, `x_max` and so on.
+pub fn named_box(
+    name: &str,
+    between: &str,
+    (kind, size, cells): (CellKind, [f64; 3], [usize; 3]),
+    at: [f64; 3],
+) -> Mesh {
+    let mut mesh = structured_box(kind, size, cells).unwrap();
+    mesh.nodes.iter_mut().for_each(|x| (0..3).for_each(|k| x[k] += at[k]));
+    for region in &mut mesh.regions {
+        region.name =
+            if region.dimension == 3 { name.into() } else { format!("{name}{between}{}", region.name) };
+    }
+    mesh
 }
 
 /// Unit translation (0, 1, 2) or rotation about an axis through the origin (3, 4, 5), six values a node.

@@ -1,12 +1,12 @@
 //! Linear equations between degrees of freedom as a case has them, `[equation.NAME]`: closed forms, the same model without them, faults.
 
-use crate::common::lowest_frequencies;
+use crate::common::{lowest_frequencies, named_box};
 use std::fmt::Write as _;
 use stridor::bounds::{Origin::*, within};
 use stridor::case::Case;
 use stridor::job::{Prepared, Selection, analyse};
 use stridor::mesh::generate::structured_box;
-use stridor::mesh::{CellKind, Mesh, write};
+use stridor::mesh::{CellKind, Mesh, coincident, write};
 use stridor::results::{ComplexResult, FrfResult, RunResults, TransientResult};
 
 /// The lowest frequencies of a case with a mesh `a.msh` and a file of equations `a.csv`, where it names them.
@@ -86,18 +86,12 @@ fn halves_that_equations_join_are_the_whole() {
 
     let mut halves = Mesh::default();
     for (name, x) in [("left", 0.0), ("right", 0.05)] {
-        let mut half = structured_box(CellKind::Hexahedron20, [0.05, 0.02, 0.01], [2, 2, 1]).unwrap();
-        half.nodes.iter_mut().for_each(|node| node[0] += x);
-        for region in &mut half.regions {
-            region.name = if region.dimension == 3 { name.into() } else { format!("{name} {}", region.name) };
-        }
-        halves.append(half);
+        let half = (CellKind::Hexahedron20, [0.05, 0.02, 0.01], [2, 2, 1]);
+        halves.append(named_box(name, " ", half, [x, 0.0, 0.0]));
     }
     let mut csv = "equation,node,component,factor\n".to_string();
-    let (mut count, left) = (0, halves.nodes.len() / 2);
-    for a in 0..left {
-        let near = |b: &usize| (0..3).all(|k| (halves.nodes[a][k] - halves.nodes[*b][k]).abs() < 1e-9);
-        let Some(b) = (left..2 * left).find(near) else { continue };
+    let mut count = 0;
+    for [a, b] in coincident(&halves.nodes) {
         for component in ["ux", "uy", "uz"] {
             count += 1;
             let [first, other] = if count % 2 == 0 { [a, b] } else { [b, a] };

@@ -1,5 +1,6 @@
 //! A case as a model of another program: CalculiX finds the same frequencies, and what is written reads back.
 
+use crate::common::named_box;
 use std::path::Path;
 use std::process::Command;
 use stridor::bounds::{Origin::*, within};
@@ -7,7 +8,7 @@ use stridor::case::read_case;
 use stridor::decks::{self, Format, Units, Weight, convert};
 use stridor::job::{Prepared, Selection, analyse, deck};
 use stridor::mesh::generate::structured_box;
-use stridor::mesh::{CellKind, Mesh, to_msh_exactly};
+use stridor::mesh::{CellKind, Mesh, coincident, to_msh_exactly};
 use stridor::results::{NamedModes, RunResults};
 
 const STEEL: &str = "[material.steel]\nyoungs_modulus = 2.1e11\npoissons_ratio = 0.3\ndensity = 7850\n";
@@ -114,16 +115,9 @@ fn calculix_finds_those_of_other_solids_as_the_mesh_is_fine() {
 
 /// A beam and a pad on it whose meshes do not match, with parts named `beam` and `pad`.
 fn beam_and_pad() -> Mesh {
-    let named = |name: &str, size: [f64; 3], cells: [usize; 3], at: [f64; 3]| {
-        let mut mesh = structured_box(CellKind::Hexahedron20, size, cells).unwrap();
-        for region in &mut mesh.regions {
-            region.name = if region.dimension == 3 { name.into() } else { format!("{name}_{}", region.name) };
-        }
-        mesh.nodes.iter_mut().for_each(|x| (0..3).for_each(|k| x[k] += at[k]));
-        mesh
-    };
-    let mut mesh = named("beam", [0.1, 0.02, 0.01], [5, 2, 1], [0.0; 3]);
-    mesh.append(named("pad", [0.04, 0.016, 0.008], [3, 3, 1], [0.05, 0.002, 0.01]));
+    let kind = CellKind::Hexahedron20;
+    let mut mesh = named_box("beam", "_", (kind, [0.1, 0.02, 0.01], [5, 2, 1]), [0.0; 3]);
+    mesh.append(named_box("pad", "_", (kind, [0.04, 0.016, 0.008], [3, 3, 1]), [0.05, 0.002, 0.01]));
     mesh
 }
 
@@ -186,18 +180,12 @@ fn calculix_finds_the_frequencies_of_joined_parts() {
 fn geared_beams() -> (Mesh, String, String) {
     let mut mesh = Mesh::default();
     for (name, x) in [("beam", 0.0), ("tip", 0.1)] {
-        let mut own = structured_box(CellKind::Hexahedron20, [0.1, 0.02, 0.01], [4, 2, 1]).unwrap();
-        own.nodes.iter_mut().for_each(|node| node[0] += x);
-        for region in &mut own.regions {
-            region.name = if region.dimension == 3 { name.into() } else { format!("{name}_{}", region.name) };
-        }
-        mesh.append(own);
+        let own = (CellKind::Hexahedron20, [0.1, 0.02, 0.01], [4, 2, 1]);
+        mesh.append(named_box(name, "_", own, [x, 0.0, 0.0]));
     }
     let mut equations = "equation,node,component,factor\n".to_string();
-    let (mut count, half) = (0, mesh.nodes.len() / 2);
-    for a in 0..half {
-        let near = |b: &usize| (0..3).all(|k| (mesh.nodes[a][k] - mesh.nodes[*b][k]).abs() < 1e-9);
-        let Some(b) = (half..2 * half).find(near) else { continue };
+    let mut count = 0;
+    for [a, b] in coincident(&mesh.nodes) {
         for (component, factor) in [("ux", 1.0), ("uy", 1.0), ("uz", 2.0)] {
             count += 1;
             equations +=

@@ -1,6 +1,6 @@
 //! Ties, averaging links and supports about an axis as a case has them: frequencies, warnings, faults with key and line.
 
-use crate::common::lowest_frequencies;
+use crate::common::{lowest_frequencies, named_box};
 use stridor::bounds::{Origin::*, least, within};
 use stridor::case::Case;
 use stridor::job::{Prepared, Selection, analyse, check_case};
@@ -15,12 +15,7 @@ fn bar(gap: f64) -> Mesh {
         ("left", CellKind::Hexahedron20, [3, 2, 1], 0.0),
         ("right", CellKind::Tetrahedron10, [3, 3, 1], 0.05 + gap),
     ] {
-        let mut half = structured_box(kind, [0.05, 0.02, 0.01], cells).unwrap();
-        half.nodes.iter_mut().for_each(|node| node[0] += x);
-        for region in &mut half.regions {
-            region.name = if region.dimension == 3 { name.into() } else { format!("{name} {}", region.name) };
-        }
-        bar.append(half);
+        bar.append(named_box(name, " ", (kind, [0.05, 0.02, 0.01], cells), [x, 0.0, 0.0]));
     }
     bar
 }

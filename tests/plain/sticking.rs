@@ -1,10 +1,9 @@
 //! Faces that press each other and do not slide: held by their friction, as joined ones are the more, the stiffer the contact.
 
-use crate::common::lowest_frequencies;
+use crate::common::{lowest_frequencies, named_box};
 use stridor::bounds::{Origin::*, within};
 use stridor::case::Case;
 use stridor::job::{Prepared, Selection, analyse};
-use stridor::mesh::generate::structured_box;
 use stridor::mesh::{CellKind, Mesh, write};
 use stridor::results::{ComplexResult, TransientResult};
 
@@ -12,12 +11,8 @@ use stridor::results::{ComplexResult, TransientResult};
 fn bar() -> Mesh {
     let mut bar = Mesh::default();
     for (name, x) in [("left", 0.0), ("right", 0.05)] {
-        let mut half = structured_box(CellKind::Hexahedron20, [0.05, 0.02, 0.01], [3, 2, 1]).unwrap();
-        half.nodes.iter_mut().for_each(|node| node[0] += x);
-        for region in &mut half.regions {
-            region.name = if region.dimension == 3 { name.into() } else { format!("{name} {}", region.name) };
-        }
-        bar.append(half);
+        let half = (CellKind::Hexahedron20, [0.05, 0.02, 0.01], [3, 2, 1]);
+        bar.append(named_box(name, " ", half, [x, 0.0, 0.0]));
     }
     bar
 }

@@ -10,6 +10,7 @@ mod small_rig;
 mod sweeps;
 
 mod command_line;
+mod export;
 mod extremes;
 #[cfg(target_os = "linux")]
 mod faults;
