@@ -28,7 +28,7 @@ const KIB: usize = 1 << 10;
 
 /// `times` is what an input of the densest kind takes, a list just after it has been doubled and copied: `1,1,1` in a list of
 /// TOML makes some 110 bytes of two, a line of one digit a mode of 64, an empty line of a universal file 32.
-pub const READERS: [Reader; 16] = [
+pub const READERS: [Reader; 17] = [
     Reader {
         name: "mesh",
         read: mesh,
@@ -90,6 +90,7 @@ pub const READERS: [Reader; 16] = [
     Reader { name: "nastran", read: nastran, samples: &[], times: 256, constant: (4 << 10) * KIB },
     Reader { name: "ansys", read: ansys, samples: &[], times: 256, constant: (4 << 10) * KIB },
     Reader { name: "groups", read: groups, samples: &[], times: 256, constant: (4 << 10) * KIB },
+    Reader { name: "grid", read: grid, samples: &[], times: 256, constant: (4 << 10) * KIB },
 ];
 
 /// log₂: counts of about the same size are the same kind.
@@ -148,6 +149,10 @@ fn ansys(bytes: &[u8]) -> Result<String> {
 
 fn groups(bytes: &[u8]) -> Result<String> {
     deck(bytes, Format::Universal)
+}
+
+fn grid(bytes: &[u8]) -> Result<String> {
+    deck(bytes, Format::Vtk)
 }
 
 fn table(bytes: &[u8]) -> Result<String> {

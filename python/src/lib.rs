@@ -3,6 +3,7 @@
 //! | module | content |
 //! |---|---|
 //! | [`case`] | cases: reading, scalars, check |
+//! | [`mesh`] | meshes as Gmsh files |
 //! | [`model`] | M, C, K and the contact points as arrays |
 //! | [`run`] | a run on a thread of its own, with progress and Ctrl-C |
 //! | [`tree`] | described results as nested dicts of arrays |
@@ -10,6 +11,7 @@
 
 mod case;
 mod errors;
+mod mesh;
 mod model;
 mod run;
 mod tree;
@@ -27,6 +29,8 @@ static MEMORY: LargePages = LargePages;
 mod _native {
     #[pymodule_export]
     use super::case::Case;
+    #[pymodule_export]
+    use super::mesh::mesh_text;
     #[pymodule_export]
     use super::run::Run;
     #[pymodule_export]

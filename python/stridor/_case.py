@@ -8,13 +8,19 @@ import tomllib
 import warnings
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from . import _native
-from ._errors import CaseWarning
+from ._errors import CaseWarning, InputError
+from ._meshio import gmsh_text
 from ._model import Model
 from ._progress import Observe, observed
 from ._results import Results, open_results
+
+if TYPE_CHECKING:
+    import meshio
+
+_LENGTHS = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "in": 0.0254}
 
 
 class Scalar(NamedTuple):
@@ -83,6 +89,33 @@ class Case:
         if folder is None:
             folder = keys.folder if isinstance(keys, Keys) else Path()
         return cls(_native.Case.parse_json(json.dumps(keys, default=_plain), Path(folder)))
+
+    @classmethod
+    def from_meshio(
+        cls,
+        mesh: meshio.Mesh,
+        keys: Mapping[str, Any],
+        folder: str | os.PathLike[str],
+        unit: str = "m",
+    ) -> Case:
+        """The case of a mesh of `meshio <https://github.com/nschloe/meshio>`_ and a mapping with the other keys of a case file.
+
+        The mesh is written to ``mesh.msh`` in ``folder``, which is made where it is not there; ``unit`` is that of its coordinates:
+        ``"m"``, ``"mm"``, ``"cm"`` or ``"in"``. Regions are its sets of cells and of points, and the physical groups of Gmsh; without any,
+        all cells of the highest dimension are the region ``part``.
+
+        >>> keys = {"material": {...}, "solid": {"part": {"material": "steel"}}, "modes": {"all": {"count": 10}}}
+        >>> stridor.Case.from_meshio(meshio.read("disc.vtu"), keys, "disc", unit="mm")
+        """
+        folder = Path(folder)
+        length = _LENGTHS.get(unit)
+        if length is None:
+            found, expected = f"`{unit}`", f"one of {', '.join(_LENGTHS)}"
+            raise InputError(f"unit: found {found}; expected {expected}.", [("unit", found, expected, "")])
+        text = gmsh_text(mesh, length)
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / "mesh.msh").write_text(text, encoding="utf-8")
+        return cls.from_dict({**keys, "mesh": {"file": "mesh.msh", "unit": "m"}}, folder)
 
     @property
     def title(self) -> str:
@@ -183,7 +216,7 @@ def import_deck(
     folder: str | os.PathLike[str],
     format: str | None = None,
 ) -> Case:
-    """The case of a model of another program (Abaqus, CalculiX, NASTRAN, ANSYS), made in a new folder with its mesh.
+    """The case of a model of another program (Abaqus, CalculiX, NASTRAN, ANSYS, UNV, VTU), made in a new folder with its mesh.
 
     ``unit`` says which units its numbers are in: ``"m"``, ``"mm"`` (t, N, MPa), ``"mm-kg"``, ``"mm-kg-ms"``, ``"cm"`` or ``"in"``. What was
     read is in ``folder / "import.md"``; what was not and matters is a :class:`CaseWarning`.

@@ -3,10 +3,18 @@ from os import PathLike
 from pathlib import Path
 from typing import Any, final
 
-__all__ = ["Case", "Run", "main", "version"]
+import numpy as np
+import numpy.typing as npt
+
+__all__ = ["Case", "Run", "main", "mesh_text", "version"]
 
 def version() -> tuple[str, str | None]: ...
 def main(arguments: Sequence[str]) -> int: ...
+def mesh_text(
+    points: npt.NDArray[np.float64],
+    blocks: Sequence[tuple[int, npt.NDArray[np.int64]]],
+    regions: Sequence[tuple[str, int, Sequence[int]]],
+) -> str: ...
 
 @final
 class Case:

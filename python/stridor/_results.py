@@ -14,10 +14,11 @@ import numpy.typing as npt
 import pandas as pd
 import xarray as xr
 
-from . import _native, _plots
+from . import _meshio, _native, _plots
 from ._tree import tree_of
 
 if TYPE_CHECKING:
+    import meshio
     import pyvista
     from matplotlib.axes import Axes
 
@@ -130,15 +131,16 @@ class Results:
         grid = pyvista.UnstructuredGrid(cells, types, np.asarray(geometry["nodes"].values, dtype=float))
         grid.cell_data["part"] = geometry["element_part"].values
         grid.field_data["part_names"] = geometry["part_names"].values.astype(str)
-        if field is not None:
-            values = field.transpose("node", "freedom").values
-            parts = {"": values.real}
-            if np.iscomplexobj(values):
-                parts["_imag"] = values.imag
-            for suffix, part in parts.items():
-                grid.point_data[f"displacement{suffix}"] = part[:, :3]
-                grid.point_data[f"rotation{suffix}"] = part[:, 3:]
+        for name, values in _motion(field).items():
+            grid.point_data[name] = values
         return grid
+
+    def to_meshio(self, field: xr.DataArray | None = None) -> meshio.Mesh:
+        """The mesh as an object of meshio, with the parts as sets of cells; ``field`` as in :meth:`mesh`.
+
+        >>> results.to_meshio(results.complex_modes["right"].sel(mode=3)).write("squeal.xdmf")
+        """
+        return _meshio.of_geometry(self._dataset("geometry", "mesh"), _motion(field))
 
     def plot_growth(self, ax: Axes | None = None) -> Axes:
         """Growth rate over frequency of the complex modes, with the frequencies of those that grow."""
@@ -197,6 +199,19 @@ class Results:
 
     def _repr_html_(self) -> str:
         return str(self.tree._repr_html_())  # type: ignore[no-untyped-call]
+
+
+def _motion(field: xr.DataArray | None) -> dict[str, npt.NDArray[np.float64]]:
+    """Displacements and rotations of the nodes of a field, real and imaginary parts."""
+    if field is None:
+        return {}
+    values = field.transpose("node", "freedom").values
+    parts = {"": values.real, "_imag": values.imag} if np.iscomplexobj(values) else {"": values}
+    return {
+        f"{name}{suffix}": part[:, own]
+        for suffix, part in parts.items()
+        for name, own in (("displacement", slice(3)), ("rotation", slice(3, 6)))
+    }
 
 
 def open_results(folder: str | os.PathLike[str]) -> Results:

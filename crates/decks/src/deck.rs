@@ -209,6 +209,8 @@ pub enum SectionShape {
         /// A \[length²\].
         area: f64,
     },
+    /// Solids, or shells and beams whose thickness and cross-section the file does not have.
+    Unstated,
 }
 
 /// The cross-section of a beam.

@@ -17,6 +17,8 @@ pub enum Format {
     Universal,
     /// Bulk data decks of NASTRAN.
     Nastran,
+    /// Unstructured grids of VTK.
+    Vtk,
 }
 
 /// A row of the table of formats.
@@ -55,6 +57,7 @@ const FORMATS: &[Row] = &[
         read: crate::nastran::read,
         write: Some(crate::nastran::write),
     },
+    Row { format: Format::Vtk, name: "vtk", endings: &["vtu"], read: crate::vtk::read, write: None },
 ];
 
 impl Format {

@@ -20,6 +20,7 @@ mod skin;
 mod text;
 mod turn;
 mod universal;
+mod vtk;
 mod written;
 
 pub use convert::{Converted, Units, convert};

@@ -25,11 +25,11 @@ impl Files {
         Files { memory: Some(bytes.to_vec()), ..Files::default() }
     }
 
-    /// The text of a file, whose bytes need not be UTF-8 where they are a comment, and its number.
+    /// The bytes of a file, and its number.
     ///
     /// # Errors
     /// A file that cannot be read.
-    pub fn read(&mut self, path: &Path) -> Result<(u32, String)> {
+    pub fn read_bytes(&mut self, path: &Path) -> Result<(u32, Vec<u8>)> {
         let bytes = match self.memory.as_mut() {
             Some(_) if !self.paths.is_empty() => {
                 let fault = Fault::new(path.display().to_string(), "no file there", "one file in memory");
@@ -38,6 +38,17 @@ impl Files {
             Some(bytes) => std::mem::take(bytes),
             None => read_bytes(path, "a model of another program")?,
         };
+        let number = self.paths.len() as u32;
+        self.paths.push(path.to_path_buf());
+        Ok((number, bytes))
+    }
+
+    /// The text of a file, whose bytes need not be UTF-8 where they are a comment, and its number.
+    ///
+    /// # Errors
+    /// A file that cannot be read, or that is no text.
+    pub fn read(&mut self, path: &Path) -> Result<(u32, String)> {
+        let (number, bytes) = self.read_bytes(path)?;
         let text = plain(&bytes);
         if let Some(at) = text.iter().position(|byte| *byte == 0) {
             return Err(Error::input(not_text(&text, at, &path.display().to_string())));
@@ -47,8 +58,6 @@ impl Files {
             // Latin-1: every byte is the character of its number.
             Err(_) => text.iter().map(|byte| char::from(*byte)).collect(),
         };
-        let number = self.paths.len() as u32;
-        self.paths.push(path.to_path_buf());
         Ok((number, text))
     }
 

@@ -1,6 +1,7 @@
 //! A cell: its kind and its nodes.
 
 use super::CellKind;
+use super::quality::{cross, dot, minus};
 
 /// One cell; its nodes index [`super::Mesh::nodes`], in the order of [`CellKind`].
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
@@ -119,6 +120,21 @@ impl Cell {
     /// Its nodes in the order of VTK files.
     pub fn to_vtk(&self) -> Vec<usize> {
         self.kind.table().vtk.order.to_file(self.nodes())
+    }
+
+    /// The cell of VTK's type `number` on these points, whose coordinates `at` gives; none where there is no such kind, or where it has
+    /// another number of points. Wedges come in both orders, of which the one that is not inside out is meant: that of VTK's manual, and
+    /// the other one, which meshio and others write.
+    pub fn from_vtk(number: i64, points: &[usize], at: impl Fn(usize) -> [f64; 3]) -> Option<Cell> {
+        let (kind, order) = CellKind::of_vtk(number)?;
+        let mut nodes = order.from_file(points)?;
+        if kind == CellKind::Wedge6 {
+            let [a, b, c] = [1, 2, 3].map(|k| minus(at(nodes[k]), at(nodes[0])));
+            if dot(cross(a, b), c) < 0.0 {
+                nodes = points.to_vec();
+            }
+        }
+        Cell::new(kind, &nodes)
     }
 
     /// The nodes of the points, lines, triangles and quadrilaterals that it can be drawn by ([`super::CellTable::pieces`]).

@@ -113,7 +113,7 @@ impl Converter<'_> {
         let density = material.and_then(|material| material.density).unwrap_or(0.0) * self.units.density();
         let length = self.units.length;
         let across = match section.shape {
-            SectionShape::Solid => 1.0,
+            SectionShape::Solid | SectionShape::Unstated => 1.0,
             SectionShape::Shell { thickness } => thickness * length,
             SectionShape::Beam { profile, .. } => profile.area() * length * length,
             SectionShape::Truss { area } => area * length * length,

@@ -104,6 +104,7 @@ impl Converter<'_> {
                 SectionShape::Solid => kind.dimension() == 3,
                 SectionShape::Shell { .. } => kind.dimension() == 2,
                 SectionShape::Beam { .. } | SectionShape::Truss { .. } => kind.dimension() == 1,
+                SectionShape::Unstated => true,
             };
             let name = &self.deck.type_names[self.deck.elements[element].type_name as usize];
             if !fits {
@@ -173,11 +174,12 @@ impl Converter<'_> {
             return;
         };
         let Some(name) = self.regions.part(name, &elements) else { return };
+        let dimension = deck.elements[elements[0]].kind.dimension();
         let kinds: HashSet<CellKind> = elements.iter().map(|element| deck.elements[*element].kind).collect();
         let name_of_material = quoted(&material.name);
         match section.shape {
-            SectionShape::Solid => {
-                self.case.table("solid", &name).key("material", name_of_material);
+            SectionShape::Solid | SectionShape::Unstated if dimension == 3 => {
+                self.case.table("solid", &name).key("material", name_of_material.clone());
                 if reduced {
                     self.case.key("integration", quoted("reduced"));
                 }
@@ -194,26 +196,35 @@ impl Converter<'_> {
                     self.orthotropic(&material.name, section, youngs_moduli, poissons_ratios, shear_moduli);
                 }
             }
+            SectionShape::Solid | SectionShape::Unstated => {
+                let (table, size) = if dimension == 2 { ("shell", "thickness") } else { ("bar", "diameter") };
+                self.case.table(table, &name).comment(format!("The file has no {size}: give one."));
+                self.case.key("material", name_of_material.clone());
+            }
             SectionShape::Shell { thickness } => {
                 let thickness = quantity(thickness * self.units.length, 1e-3, "mm");
-                self.case.table("shell", &name).key("material", name_of_material).key("thickness", thickness);
+                self.case.table("shell", &name).key("material", name_of_material.clone()).key("thickness", thickness);
                 self.case.key("theory", quoted("mindlin"));
             }
             SectionShape::Beam { profile, first_axis } => {
-                self.case.table("bar", &name).key("material", name_of_material);
+                self.case.table("bar", &name).key("material", name_of_material.clone());
                 if let Some(axis) = first_axis {
                     self.case.key("orientation", numbers(axis));
                 }
                 self.profile(profile);
             }
             SectionShape::Truss { area } => {
-                self.case.table("bar", &name).key("material", name_of_material);
+                self.case.table("bar", &name).key("material", name_of_material.clone());
                 self.case.comment("A bar without bending, read as a round beam of the same area.");
                 let diameter = 2.0 * (area / std::f64::consts::PI).sqrt();
                 let why = "trusses are read as round beams of the same area";
                 self.ledger.note(Weight::Perhaps, format!("part {name}"), why, section.place);
                 self.profile(Profile::Round { diameter });
             }
+        }
+        if material.elastic.is_none() {
+            let table = format!("[material.{name_of_material}]").replace('"', "");
+            self.case.comment(format!("The file has no elastic constants: add {table}."));
         }
         self.note_formulations(&name, section, &elements);
         self.parts.push(Part { name, section: index, elements });

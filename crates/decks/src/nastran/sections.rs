@@ -92,7 +92,7 @@ pub(super) fn resolve(
             SectionShape::Shell { thickness } => *thickness,
             SectionShape::Truss { area } => *area,
             SectionShape::Beam { profile, .. } => profile.area(),
-            SectionShape::Solid => 0.0,
+            SectionShape::Solid | SectionShape::Unstated => 0.0,
         };
         if property.carried != 0.0 && size > 0.0 {
             let why = "mass that stiffens nothing is read as a higher density of the material";

@@ -96,15 +96,14 @@ fn other(kind: u32, place: Place, deck: &mut Deck) {
     deck.ledger.note(weight, format!("dataset {kind}"), why, place);
 }
 
-/// Sections of solids by the numbers of their property and material.
+/// Sections by the numbers of their property and material.
 fn sections(properties: BTreeMap<elements::Property, (Vec<usize>, Place)>, deck: &mut Deck) {
     let mut materials = std::collections::BTreeSet::new();
     for (property, (elements, place)) in properties {
         let name = format!("PROPERTY_{}_MATERIAL_{}", property.table, property.material);
         if property.dimension != 3 {
-            let why = "thickness and area of shells and beams are in datasets that are not read";
-            deck.ledger.note(Weight::Matters, name, why, place);
-            continue;
+            let why = "thickness and area of shells and beams are in datasets that are not read: give them in the case";
+            deck.ledger.note(Weight::Matters, &name, why, place);
         }
         let material = format!("MATERIAL_{}", property.material);
         materials.insert(material.clone());
@@ -113,7 +112,7 @@ fn sections(properties: BTreeMap<elements::Property, (Vec<usize>, Place)>, deck:
             elements,
             material,
             axes: None,
-            shape: SectionShape::Solid,
+            shape: SectionShape::Unstated,
             place,
         });
     }

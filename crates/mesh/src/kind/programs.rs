@@ -5,7 +5,7 @@
 //! CPENTA, CPYRAM, CTETRA, CTRIA6, CQUAD8, PLOAD4; ANSYS Mechanical APDL Element Reference, SOLID185, SOLID186, SOLID187, SOLID285, SHELL181,
 //! SHELL281, BEAM189; *Universal File Datasets Summary* of SDRC, dataset 2412; the manuals of Gmsh and VTK.
 
-use super::order::NamedKind;
+use super::order::{NamedKind, Order};
 use super::table::CellKind;
 
 /// A program whose files name elements.
@@ -44,6 +44,19 @@ impl CellKind {
             .min_by_key(|(_, own)| own.len())
     }
 
+    /// The kind of a cell of VTK files by the number of its type, and the order of its points there: pixels and voxels, whose points go by
+    /// coordinates, are quadrilaterals and hexahedra.
+    pub fn of_vtk(number: i64) -> Option<(CellKind, Order)> {
+        match number {
+            8 => Some((CellKind::Quadrilateral4, Order(&[0, 1, 3, 2]))),
+            11 => Some((CellKind::Hexahedron8, Order(&[0, 1, 3, 2, 4, 5, 7, 6]))),
+            _ => {
+                let found = CellKind::all().find(|kind| i64::from(kind.table().vtk.number) == number);
+                found.map(|kind| (kind, kind.table().vtk.order))
+            }
+        }
+    }
+
     /// The side of a solid that a PLOAD4 entry of NASTRAN names by corners: `first` is the corner G1 of the face, `second` is
     /// * of tetrahedra the corner G4 that is not on it;
     /// * of quadrilateral faces the corner G3 across from G1;
@@ -77,7 +90,7 @@ impl CellKind {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{NumberedKind, Order};
+    use super::super::NumberedKind;
     use super::*;
     use CellKind::*;
     use Program::*;

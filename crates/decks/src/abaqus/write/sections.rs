@@ -65,6 +65,10 @@ impl Writer<'_> {
             let words = format!("ELSET={set}, MATERIAL={material}{orientation}");
             match &section.shape {
                 SectionShape::Solid => self.line(format!("*SOLID SECTION, {words}")),
+                SectionShape::Unstated => {
+                    let what = format!("section {}", section.name);
+                    self.note(Weight::Matters, &what, "its shape is not stated");
+                }
                 SectionShape::Truss { area } => {
                     self.line(format!("*SOLID SECTION, {words}"));
                     self.line(number(*area));

@@ -91,6 +91,11 @@ impl Writer<'_> {
                     }
                     ("PSHELL", vec![Real(*thickness), head[1].clone(), Blank, head[1].clone()])
                 }
+                SectionShape::Unstated => {
+                    let why = "its shape is not stated";
+                    self.note(Weight::Matters, &format!("section {}", section.name), why);
+                    continue;
+                }
                 SectionShape::Truss { area } => ("PROD", vec![Real(*area)]),
                 SectionShape::Beam {
                     profile: Profile::General { area, second_moments: [i, k], torsion },
