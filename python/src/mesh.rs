@@ -18,7 +18,11 @@ pub fn mesh_text(
     blocks: Vec<Block<'_>>,
     regions: Vec<(String, usize, Vec<usize>)>,
 ) -> PyResult<String> {
-    let nodes = points.as_array().rows().into_iter().map(|at| std::array::from_fn(|k| at.get(k).copied().unwrap_or(0.0)));
+    let nodes = points
+        .as_array()
+        .rows()
+        .into_iter()
+        .map(|at| std::array::from_fn(|k| at.get(k).copied().unwrap_or(0.0)));
     let mut mesh = Mesh { nodes: nodes.collect(), ..Mesh::default() };
     let mut faults = Faults::new();
     for (index, (number, rows)) in blocks.iter().enumerate() {
@@ -41,25 +45,45 @@ pub fn mesh_text(
 }
 
 /// The cell of a row of a block.
-fn cell(number: i64, own: &[i64], nodes: &[[f64; 3]], place: &str, row: usize) -> std::result::Result<Cell, Fault> {
+fn cell(
+    number: i64,
+    own: &[i64],
+    nodes: &[[f64; 3]],
+    place: &str,
+    row: usize,
+) -> std::result::Result<Cell, Fault> {
     let Some((kind, _)) = CellKind::of_vtk(number) else {
         let names: Vec<&str> = CellKind::all().map(|kind| kind.table().name).collect();
-        return Err(Fault::new(place, format!("VTK's type {number} of cells"), format!("one of {}", names.join(", "))));
+        return Err(Fault::new(
+            place,
+            format!("VTK's type {number} of cells"),
+            format!("one of {}", names.join(", ")),
+        ));
     };
     let node = |point: &i64| usize::try_from(*point).ok().filter(|point| *point < nodes.len());
     let Some(points) = own.iter().map(node).collect::<Option<Vec<usize>>>() else {
         let found = format!("points {own:?} in row {row}");
-        return Err(Fault::new(place, found, format!("numbers of points, 0 to {}", nodes.len().saturating_sub(1))));
+        return Err(Fault::new(
+            place,
+            found,
+            format!("numbers of points, 0 to {}", nodes.len().saturating_sub(1)),
+        ));
     };
     Cell::from_vtk(number, &points, |node| nodes[node]).ok_or_else(|| {
-        Fault::new(place, format!("{} points a row", own.len()), format!("{} of a {}", kind.n_nodes(), kind.table().name))
+        Fault::new(
+            place,
+            format!("{} points a row", own.len()),
+            format!("{} of a {}", kind.n_nodes(), kind.table().name),
+        )
     })
 }
 
 /// The text, once the cells of regions are there and have their dimension.
 fn text(mesh: &Mesh) -> Result<String> {
     for Region { name, dimension, elements } in &mesh.regions {
-        let wrong = elements.iter().find(|k| mesh.elements.get(**k).is_none_or(|cell| cell.dimension() != *dimension));
+        let wrong = elements
+            .iter()
+            .find(|k| mesh.elements.get(**k).is_none_or(|cell| cell.dimension() != *dimension));
         if let Some(wrong) = wrong {
             let found = format!("cell {wrong} in region \"{name}\"");
             let fault = Fault::new("regions", found, format!("cells of dimension {dimension} of the mesh"));

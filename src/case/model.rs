@@ -274,9 +274,10 @@ variants! {
             /// Total force \[N\], shared equally by the nodes of the region.
             force: [f64; 3] = key::quantities(FORCE).expecting("three forces such as [0, \"1 N\", 0]"),
         }
-        /// A pressure on faces of a solid.
+        /// A pressure on faces of a solid or a shell.
         Pressure "pressure" {
-            /// p \[Pa\], against the faces of a solid: positive where it presses.
+            /// p \[Pa\], positive where it presses: inwards on the faces of a solid; on a shell against its normal, which is that of the right hand
+            /// about the nodes of a face.
             pressure: f64 = key::quantity(PRESSURE).expecting("a pressure such as \"1 MPa\""),
         }
     }

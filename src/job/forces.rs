@@ -4,8 +4,10 @@ use super::regions::Regions;
 use crate::case::{Case, Force, ForceChoice};
 use crate::error::{Error, Fault, Faults, Result};
 use crate::linalg::SparseVector;
+use crate::mesh::Cell;
 use crate::structure::{Assembled, Model};
 use nalgebra::Vector3;
+use std::collections::HashSet;
 
 /// Quadrature of a pressure on faces, exact on flat ones of second order.
 const DEGREE: usize = 4;
@@ -50,7 +52,7 @@ pub fn force_form(
     }
 }
 
-/// f = −p ∫ Nᵀn dA over faces of a solid, n outwards.
+/// f = −p ∫ Nᵀn dA over faces of a solid, n outwards, or of a shell, n by the right hand about the nodes.
 fn pressed(
     pressure: f64,
     on: &str,
@@ -58,14 +60,21 @@ fn pressed(
     (regions, model, assembled): (&Regions, &Model, &Assembled),
 ) -> Result<SparseVector> {
     let region = regions.region(on, place)?;
-    let part = model.part_with(&regions.mesh.region_nodes(region)).filter(|part| part.as_shell().is_none());
-    let faces = match (region.dimension, part) {
-        (2, Some(part)) => part.outward(regions.cells(region)).map(|faces| (part, faces)),
+    let cells = regions.cells(region);
+    let shell = model.parts.iter().filter(|part| part.as_shell().is_some()).find(|part| {
+        let own: HashSet<&Cell> = part.cells.iter().collect();
+        cells.iter().all(|cell| own.contains(cell))
+    });
+    let solid =
+        || model.part_with(&regions.mesh.region_nodes(region)).filter(|part| part.as_shell().is_none());
+    let faces = match (region.dimension, shell.or_else(solid)) {
+        (2, Some(part)) => part.outward(cells).map(|faces| (part, faces)),
         _ => None,
     };
     let Some((part, faces)) = faces else {
-        let found = format!("region \"{on}\", which is not one of faces on the skin of a solid");
-        let fault = Fault::new(place, found, "faces of one of the case's solids, which a `pressure` acts on");
+        let found =
+            format!("region \"{on}\", which is not one of faces of a shell or on the skin of a solid");
+        let fault = Fault::new(place, found, "faces of one part of the case, which a `pressure` acts on");
         return Err(Error::input(fault.with_help("Push other regions by a `force`")));
     };
     let mut entries = Vec::new();

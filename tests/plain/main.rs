@@ -29,6 +29,7 @@ mod properties;
 mod rig;
 mod rotation;
 mod schema;
+mod shell_pressure;
 mod solids;
 mod stick_slip;
 mod sticking;

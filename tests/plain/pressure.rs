@@ -1,4 +1,4 @@
-//! `[force.NAME]` with a `pressure` on faces of solids.
+//! `[force.NAME]` with a `pressure` on faces of solids; those of shells: `shell_pressure.rs`.
 
 use stridor::bounds::{Origin::*, within};
 use stridor::case::Case;
@@ -57,12 +57,12 @@ fn a_pressure_is_consistent_on_faces_of_every_kind() {
 }
 
 #[test]
-fn a_pressure_needs_faces_of_a_solid() {
+fn a_pressure_needs_faces() {
     let fault =
         |tables: &str| with(&block(CellKind::Hexahedron8), tables, |prepared| prepared.err().unwrap());
     let clamp = "[support.a]\non = \"x_min\"\n";
     for (push, expected) in [
-        ("on = \"block\"\npressure = 1", "not one of faces on the skin of a solid"),
+        ("on = \"block\"\npressure = 1", "not one of faces of a shell or on the skin of a solid"),
         ("on = \"z_mox\"\npressure = 1", "Did you mean \"z_max\""),
         ("on = \"z_max\"\npressure = \"1 N\"", "another dimension"),
         ("on = \"z_max\"\npressure = 1\nforce = [0, 0, 1]", "both `force` and `pressure`"),

@@ -401,6 +401,13 @@ pub enum LoadOn {
         /// p \[force/length²\], positive where it presses.
         pressure: f64,
     },
+    /// A pressure on shells.
+    Shells {
+        /// The elements.
+        shells: Vec<usize>,
+        /// p \[force/length²\], positive along the normal: by the right hand about the nodes.
+        pressure: f64,
+    },
 }
 
 /// A steady rotation.

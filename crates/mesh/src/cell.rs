@@ -1,7 +1,7 @@
 //! A cell: its kind and its nodes.
 
 use super::CellKind;
-use super::quality::{cross, dot, minus};
+use nalgebra::Vector3;
 
 /// One cell; its nodes index [`super::Mesh::nodes`], in the order of [`CellKind`].
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
@@ -129,8 +129,8 @@ impl Cell {
         let (kind, order) = CellKind::of_vtk(number)?;
         let mut nodes = order.from_file(points)?;
         if kind == CellKind::Wedge6 {
-            let [a, b, c] = [1, 2, 3].map(|k| minus(at(nodes[k]), at(nodes[0])));
-            if dot(cross(a, b), c) < 0.0 {
+            let [a, b, c] = [1, 2, 3].map(|k| Vector3::from(at(nodes[k])) - Vector3::from(at(nodes[0])));
+            if a.cross(&b).dot(&c) < 0.0 {
                 nodes = points.to_vec();
             }
         }

@@ -43,6 +43,7 @@ pub use gmsh::read;
 pub use info::Info;
 pub use kind::{CellKind, CellShape, CellTable, NamedKind, NumberedKind, Order, Program};
 pub use locate::{FaceTree, LocatedPoint};
+pub use orient::turn_alike;
 pub use quadrature::QuadraturePoint;
 pub use skin::{Side, outer_faces, outward};
 pub use write::{to_msh, to_msh_exactly, write};

@@ -32,7 +32,7 @@ pub(super) fn neighbours(mesh: &Mesh, region: &Region) -> Vec<Neighbours> {
 
 /// Turns faces over so that all neighbours within a region are turned alike: of those that hang together the fewer, and where
 /// these are as many, the side of the first stays. A surface of one side, such as a Möbius strip, stays as it is.
-pub(super) fn turn_alike(mesh: &mut Mesh) {
+pub fn turn_alike(mesh: &mut Mesh) {
     let mut near: Vec<Vec<(usize, bool)>> = vec![Vec::new(); mesh.elements.len()];
     let mut any = false;
     for Neighbours { faces: [e, f], opposite } in mesh.regions.iter().flat_map(|r| neighbours(mesh, r)) {

@@ -150,8 +150,14 @@ impl Maker<'_> {
                 }
                 ForceChoice::Pressure { pressure } => {
                     let surface = self.surface_of(&force.on);
-                    let faces = self.deck.surface(&surface).map_or(Vec::new(), |own| own.faces.clone());
-                    LoadOn::Faces { faces, pressure }
+                    let surface = self.deck.surface(&surface).cloned().unwrap_or_default();
+                    if surface.shells.is_empty() {
+                        LoadOn::Faces { faces: surface.faces, pressure }
+                    } else {
+                        // A case presses against the normal.
+                        let shells = surface.shells.into_iter().map(|(shell, _)| shell).collect();
+                        LoadOn::Shells { shells, pressure: -pressure }
+                    }
                 }
             };
             self.deck.loads.push(Load { name: force.on.clone(), on, place: Place::default() });

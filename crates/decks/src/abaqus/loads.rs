@@ -3,7 +3,7 @@
 use super::blocks;
 use super::reader::{Found, Reader, Row};
 use super::space::Item;
-use crate::deck::{Load, LoadOn, Motion, Place};
+use crate::deck::{Load, LoadOn, Motion, Place, ShellFace};
 use crate::ledger::Weight;
 
 const GLOBAL: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
@@ -62,25 +62,37 @@ impl Reader {
         self.deck.loads.push(Load { name, on: LoadOn::Nodes { nodes, force }, place });
     }
 
-    /// *DLOAD: elements, P1 … P6 and a pressure; CENTRIF and ω², a point, an axis; GRAV.
+    /// *DLOAD: elements, P1 … P6 and a pressure, of shells P (to CalculiX P1 and P2 are the same), which acts along their normals; CENTRIF and
+    /// ω², a point, an axis; GRAV.
     pub fn distributed(&mut self, space: usize, found: Found<'_>) {
         for row in found.rows() {
             let label = row.cell(1).to_uppercase();
             match label.as_str() {
                 "CENTRIF" => self.centrifugal(space, &row),
-                _ if label.starts_with('P') && label[1..].parse::<u8>().is_ok() => {
+                _ if label == "P" || label.starts_with('P') && label[1..].parse::<u8>().is_ok() => {
                     let Some(items) = self.items_of(space, row.cell(0), row.place) else { continue };
                     let Some(pressure) = self.number(&row, 2) else { continue };
+                    let shape = |item: &Item, dimension: usize| match item {
+                        Item::Shape(k) => {
+                            Some(*k).filter(|k| self.deck.elements[*k].kind.dimension() == dimension)
+                        }
+                        _ => None,
+                    };
+                    let shells: Vec<usize> = match label.as_str() {
+                        "P" | "P1" | "P2" => items.iter().filter_map(|item| shape(item, 2)).collect(),
+                        _ => Vec::new(),
+                    };
                     let side = |item: &Item| {
-                        let Item::Shape(index) = item else { return None };
-                        Some((*index, self.side_of(*index, &label)?))
+                        let index = shape(item, 3)?;
+                        Some((index, self.side_of(index, &label)?))
                     };
                     let faces: Vec<_> = items.iter().filter_map(side).collect();
-                    if !faces.is_empty() && faces.len() < items.len() {
+                    if faces.len() + shells.len() < items.len() {
                         let why = "a pressure on elements that have no such face is not read";
                         self.deck.ledger.note(Weight::Matters, format!("*DLOAD, {label}"), why, row.place);
                     }
-                    self.pressure(row.cell(0), faces, pressure, row.place);
+                    self.pressure(row.cell(0), LoadOn::Faces { faces, pressure }, row.place);
+                    self.pressure(row.cell(0), LoadOn::Shells { shells, pressure }, row.place);
                 }
                 _ => {
                     let weight = if label == "GRAV" { Weight::Perhaps } else { Weight::Matters };
@@ -108,22 +120,55 @@ impl Reader {
             if self.surface_of(space, row.cell(0), row.place).is_none() {
                 continue;
             }
-            let faces = self.surface_called(space, row.cell(0)).map(|s| s.faces.clone()).unwrap_or_default();
-            if !self.may_name(faces.len(), row.place) {
+            let Some(surface) = self.surface_called(space, row.cell(0)) else { continue };
+            let faces = surface.faces.clone();
+            let of =
+                |face| surface.shells.iter().filter(move |(_, own)| *own == face).map(|(index, _)| *index);
+            // It presses upon the face: that which the normal points out of along its opposite.
+            let shells = [(ShellFace::Positive, -pressure), (ShellFace::Negative, pressure)]
+                .map(|(face, pressure)| (of(face).collect::<Vec<usize>>(), pressure));
+            let all = faces.len() + shells.iter().map(|(shells, _)| shells.len()).sum::<usize>();
+            if !self.may_name(all, row.place) {
                 return;
             }
-            self.pressure(row.cell(0), faces, pressure, row.place);
+            if all == 0 {
+                let why = "a pressure on a surface without sides of solids or shells is not read";
+                self.deck.ledger.note(Weight::Matters, "*DSLOAD", why, row.place);
+            }
+            self.pressure(row.cell(0), LoadOn::Faces { faces, pressure }, row.place);
+            for (shells, pressure) in shells {
+                self.pressure(row.cell(0), LoadOn::Shells { shells, pressure }, row.place);
+            }
         }
     }
 
-    fn pressure(&mut self, name: &str, faces: Vec<(usize, usize)>, pressure: f64, place: Place) {
-        if faces.is_empty() {
-            let why = "a pressure on shells or beams is not read";
-            self.deck.ledger.note(Weight::Matters, "*DLOAD", why, place);
-        } else if pressure != 0.0 {
-            self.loaded();
-            let name = blocks::unquoted(name).to_string();
-            self.deck.loads.push(Load { name, on: LoadOn::Faces { faces, pressure }, place });
+    /// Adds a pressure, but none on nothing and none of zero. Single elements in ascending order that have the same pressure in a step are one
+    /// load.
+    fn pressure(&mut self, name: &str, on: LoadOn, place: Place) {
+        let (count, pressure) = match &on {
+            LoadOn::Faces { faces, pressure } => (faces.len(), *pressure),
+            LoadOn::Shells { shells, pressure } => (shells.len(), *pressure),
+            LoadOn::Nodes { .. } => return,
+        };
+        if count == 0 || pressure == 0.0 {
+            return;
+        }
+        let of_step = self.step.is_none() || self.step.as_ref().is_some_and(|step| step.loaded);
+        self.loaded();
+        let single = |name: &str| name.parse::<u64>().is_ok();
+        let last = self.deck.loads.last_mut().filter(|last| of_step && single(&last.name) && single(name));
+        match (last.map(|last| &mut last.on), &on) {
+            (Some(LoadOn::Faces { faces: known, pressure: p }), LoadOn::Faces { faces, .. })
+                if *p == pressure && known.last() < faces.first() =>
+            {
+                known.extend(faces);
+            }
+            (Some(LoadOn::Shells { shells: known, pressure: p }), LoadOn::Shells { shells, .. })
+                if *p == pressure && known.last() < shells.first() =>
+            {
+                known.extend(shells);
+            }
+            _ => self.deck.loads.push(Load { name: blocks::unquoted(name).to_string(), on, place }),
         }
     }
 

@@ -21,12 +21,19 @@ pub(super) fn pressures(
     index: &impl Fn(u64) -> Option<usize>,
 ) {
     let mut loads: BTreeMap<u64, Pressed> = BTreeMap::new();
+    let mut shells: BTreeMap<u64, (f64, Vec<usize>, Place)> = BTreeMap::new();
     for (number, face, pressure, place) in std::mem::take(&mut reader.model.pressures) {
         let side = if let Some(corners) = faces.loaded.get(&number) {
             let (surface, _) = contact::surface(found, std::slice::from_ref(corners), index);
             surface.faces.first().copied().filter(|_| face == 1)
         } else if let Ok(at) = deck.elements.binary_search_by_key(&number, |own| own.number) {
             let element = &deck.elements[at];
+            if element.kind.dimension() == 2 && (1..=2).contains(&face) {
+                // Face 1 is that below: a pressure there is along the normal.
+                let pressure = if face == 1 { pressure } else { -pressure };
+                shells.entry(pressure.to_bits()).or_insert((pressure, Vec::new(), place)).1.push(at);
+                continue;
+            }
             let side = side(element.kind, &deck.type_names[element.type_name as usize], face);
             side.filter(|_| element.kind.dimension() == 3 && !faces.turned.contains(&at))
                 .map(|side| (at, side))
@@ -43,17 +50,17 @@ pub(super) fn pressures(
                 loads.entry(pressure.to_bits()).or_insert((pressure, Vec::new(), place)).1.push(side)
             }
             None => {
-                let why = format!("pressure on face {face} that is no face of a solid");
+                let why = format!("pressure on face {face} that is no face of a solid or a shell");
                 reader.note(Weight::Perhaps, "SFE PRES", why, place);
             }
         }
     }
-    let all = loads.into_values().enumerate();
-    deck.loads.extend(all.map(|(k, (pressure, faces, place))| Load {
-        name: format!("PRESSURE_{}", k + 1),
-        on: LoadOn::Faces { faces, pressure },
-        place,
-    }));
+    let faces =
+        loads.into_values().map(|(pressure, faces, place)| (LoadOn::Faces { faces, pressure }, place));
+    let shells =
+        shells.into_values().map(|(pressure, shells, place)| (LoadOn::Shells { shells, pressure }, place));
+    let named = |(k, (on, place))| Load { name: format!("PRESSURE_{}", k + 1), on, place };
+    deck.loads.extend(faces.chain(shells).enumerate().map(named));
 }
 
 /// The side of a face of an element of ANSYS.

@@ -361,6 +361,15 @@ fn pressures_are_on_the_faces_of_their_numbers() {
     assert_eq!(pressed(0), (2.0, 0, vec![0, 1, 4, 5]));
 }
 
+/// Face 1 of a shell is below it, so that a pressure there is along the normal, face 2 above it.
+#[test]
+fn pressures_on_shells_have_a_side() {
+    let deck = sound(
+        "ET,1,181\nN,1,0,0\nN,2,1,0\nN,3,1,1\nN,4,0,1\nSECTYPE,1,SHELL\nSECDATA,0.1,1\nMP,EX,1,1\nTYPE,1\nMAT,1\nSECNUM,1\nEN,1,1,2,3,4\nSFE,1,2,PRES,0,3\n",
+    );
+    assert_eq!(deck.loads[0].on, LoadOn::Shells { shells: vec![0], pressure: -3.0 });
+}
+
 #[test]
 fn what_is_not_read_is_listed_with_its_weight() {
     let deck = sound(

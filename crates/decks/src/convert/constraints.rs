@@ -279,6 +279,10 @@ impl Converter<'_> {
 
     /// `[force.NAME]`.
     pub fn loads(&mut self) {
+        let mut part_of = vec![0; self.deck.elements.len()];
+        for (k, part) in self.parts.iter().enumerate() {
+            part.elements.iter().for_each(|element| part_of[*element] = k);
+        }
         for (k, load) in self.deck.loads.iter().enumerate() {
             let named = if load.name.is_empty() || load.name.parse::<u64>().is_ok() {
                 format!("load_{}", k + 1)
@@ -293,6 +297,15 @@ impl Converter<'_> {
                     let total = force.map(|f| f * self.units.force() * used.len() as f64);
                     let name = self.names.free("force", &region);
                     self.case.table("force", &name).key("on", quoted(&region)).key("force", numbers(total));
+                }
+                LoadOn::Shells { shells, pressure } => {
+                    for (turned, region) in self.regions.shells_by_side(&named, shells, &part_of) {
+                        // A case presses against the normal of the mesh.
+                        let pressure = if turned { *pressure } else { -pressure } * self.units.stress();
+                        let name = self.names.free("force", &region);
+                        let pressure = quantity(pressure, 1e6, "MPa");
+                        self.case.table("force", &name).key("on", quoted(&region)).key("pressure", pressure);
+                    }
                 }
                 LoadOn::Faces { faces, pressure } => {
                     let Some(region) = self.regions.sides(&named, faces) else { continue };

@@ -75,11 +75,10 @@ pub fn convert(deck: &Deck, units: Units) -> Result<Converted> {
             deck.nodes.len(),
             deck.elements.len()
         );
-        converter.faults.push(Fault::new(
-            place,
-            found,
-            "solids, shells or beams with a section and a material",
-        ));
+        let unread = deck.ledger.rows().find(|row| row.weight == Weight::Matters);
+        let help = unread.map_or(String::new(), |row| format!("Not read: {}: {}", row.what, row.why));
+        let fault = Fault::new(place, found, "solids, shells or beams with a section and a material");
+        converter.faults.push(fault.with_help(help));
     }
     std::mem::take(&mut converter.faults).into_result(())?;
     converter.find_uses();

@@ -203,7 +203,10 @@ impl Converter<'_> {
             }
             SectionShape::Shell { thickness } => {
                 let thickness = quantity(thickness * self.units.length, 1e-3, "mm");
-                self.case.table("shell", &name).key("material", name_of_material.clone()).key("thickness", thickness);
+                self.case
+                    .table("shell", &name)
+                    .key("material", name_of_material.clone())
+                    .key("thickness", thickness);
                 self.case.key("theory", quoted("mindlin"));
             }
             SectionShape::Beam { profile, first_axis } => {

@@ -4,7 +4,7 @@ use crate::deck::{Deck, Element};
 use crate::ledger::{Ledger, Weight};
 use crate::skin::outer_faces;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
-use stridor_mesh::{Cell, Mesh, Region};
+use stridor_mesh::{Cell, Mesh, Region, turn_alike};
 
 /// A mesh that is being made.
 pub(super) struct Regions<'a> {
@@ -166,14 +166,34 @@ impl<'a> Regions<'a> {
             let why = "a surface of solids and shells is that of its shells";
             ledger.note(Weight::Matters, format!("surface {name}"), why, Default::default());
         }
-        let cells: BTreeSet<usize> =
-            surface.shells.iter().filter_map(|(index, _)| self.cells[*index]).collect();
+        let cells = surface.shells.iter().filter_map(|(index, _)| self.cells[*index]).collect();
+        self.shells(&surface.name, cells)
+    }
+
+    /// The region of some cells of shells, which is made under a name if there is none.
+    fn shells(&mut self, name: &str, cells: BTreeSet<usize>) -> Option<String> {
         let own = cells.into_iter().collect::<Vec<_>>();
         let known = self.mesh.regions.iter().find(|region| region.dimension == 2 && region.elements == own);
         if let Some(known) = known {
             return Some(known.name.clone());
         }
-        (!own.is_empty()).then(|| self.region(&surface.name, "faces", 2, own))
+        (!own.is_empty()).then(|| self.region(name, "faces", 2, own))
+    }
+
+    /// Regions of shells of the deck, each of one part, whose normals the mesh has turned over, and of those that it has not: neighbours in a
+    /// mesh are turned alike, as they are when it is read.
+    pub fn shells_by_side(&mut self, name: &str, shells: &[usize], part_of: &[usize]) -> Vec<(bool, String)> {
+        turn_alike(&mut self.mesh);
+        let mut by_side: BTreeMap<(usize, bool), BTreeSet<usize>> = BTreeMap::new();
+        for index in shells {
+            let Element { kind, nodes, .. } = &self.deck.elements[*index];
+            if let (Some(cell), Some(own)) = (self.cells[*index], Cell::new(*kind, nodes)) {
+                let turned = self.mesh.elements[cell] != own;
+                by_side.entry((part_of[*index], turned)).or_default().insert(cell);
+            }
+        }
+        let region = |((_, turned), cells)| Some((turned, self.shells(name, cells)?));
+        by_side.into_iter().filter_map(region).collect()
     }
 
     /// Outer sides of the solids of the mesh, all of whose nodes are among some.

@@ -59,7 +59,7 @@ impl Bulk {
             "CONM1" | "CONM2" => self.masses.card(&mut fields),
             "SPC" | "SPC1" | "SPCADD" | "MPC" | "MPCADD" => self.constraints.card(&mut fields),
             "RBE2" | "RBE3" | "RBAR" | "RBAR1" => self.rigid.card(&mut fields),
-            "FORCE" | "LOAD" | "PLOAD4" | "RFORCE" => self.loads.card(&mut fields),
+            "FORCE" | "LOAD" | "PLOAD" | "PLOAD2" | "PLOAD4" | "RFORCE" => self.loads.card(&mut fields),
             "BSURF" | "BSURFS" | "BCPROP" | "BCPROPS" | "SURF" | "SET" | "SET3" | "BCBODY" => {
                 self.surfaces.card(&mut fields)
             }

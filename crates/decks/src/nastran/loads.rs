@@ -1,4 +1,4 @@
-//! Loads: FORCE, PLOAD4, LOAD, and the rotation of RFORCE.
+//! Loads: FORCE, PLOAD, PLOAD2, PLOAD4, LOAD, and the rotation of RFORCE.
 
 use super::constraints::taken;
 use super::control::Choice;
@@ -7,7 +7,8 @@ use super::list::{self, Ids};
 use super::model::Model;
 use crate::deck::{Deck, Load, LoadOn, Motion, Place, Set};
 use crate::ledger::Weight;
-use std::collections::{BTreeMap, BTreeSet};
+use crate::skin::outer_faces;
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 #[derive(Debug, Default)]
 pub(super) struct Loads {
@@ -19,9 +20,29 @@ pub(super) struct Loads {
 /// A load as its card has it.
 #[derive(Debug)]
 enum Raw {
-    Force { point: u64, system: u64, force: [f64; 3] },
-    Pressure { elements: Vec<Ids>, pressure: f64, corners: [u64; 2] },
-    Rotation { point: u64, system: u64, axis: [f64; 3], turns: f64 },
+    Force {
+        point: u64,
+        system: u64,
+        force: [f64; 3],
+    },
+    /// `card` is its name.
+    Pressure {
+        card: &'static str,
+        elements: Vec<Ids>,
+        pressure: f64,
+        corners: [u64; 2],
+    },
+    /// On the face of these corners.
+    OnCorners {
+        corners: Vec<u64>,
+        pressure: f64,
+    },
+    Rotation {
+        point: u64,
+        system: u64,
+        axis: [f64; 3],
+        turns: f64,
+    },
 }
 
 impl Loads {
@@ -51,6 +72,23 @@ impl Loads {
                 fields.unread(8, 8, Weight::Nothing, "how centrifugal forces are found is not read");
                 fields.unread(9, 9, Weight::Nothing, "a rotation that changes is not read: its speed holds");
                 Raw::Rotation { point, system, axis, turns }
+            }
+            "PLOAD" => {
+                let pressure = fields.real(2)?;
+                let mut corners = vec![fields.id(3)?, fields.id(4)?, fields.id(5)?];
+                if !fields.is_blank(6) {
+                    corners.push(fields.id(6)?);
+                }
+                Raw::OnCorners { corners, pressure }
+            }
+            "PLOAD2" => {
+                let (pressure, last) = (fields.real(2)?, fields.last());
+                Raw::Pressure {
+                    card: "PLOAD2",
+                    elements: list::read(fields, 3, last),
+                    pressure,
+                    corners: [0, 0],
+                }
             }
             _ => pressure(fields)?,
         };
@@ -105,7 +143,7 @@ fn pressure(fields: &mut Fields) -> Option<Raw> {
         "the direction of a load on faces is not read: it presses along the normal",
     );
     fields.unread(13, 14, Weight::Nothing, "the kind of load of edges is not read");
-    Some(Raw::Pressure { elements: vec![elements], pressure: p, corners })
+    Some(Raw::Pressure { card: "PLOAD4", elements: vec![elements], pressure: p, corners })
 }
 
 /// Loads of a set that differ in what they act on only, by their force or pressure.
@@ -114,6 +152,8 @@ struct Alike {
     loads: BTreeMap<[u64; 3], usize>,
     /// What each acts on already: a node that has a force twice has two loads.
     on: BTreeSet<(usize, usize, usize)>,
+    /// Once a PLOAD asks for them.
+    faces: Option<CornersOfFaces>,
 }
 
 impl Alike {
@@ -132,6 +172,7 @@ impl Alike {
         match (deck.loads.get_mut(at).map(|load| &mut load.on), &on) {
             (Some(LoadOn::Nodes { nodes, .. }), LoadOn::Nodes { .. }) if fresh => nodes.push(thing),
             (Some(LoadOn::Faces { faces, .. }), LoadOn::Faces { .. }) if fresh => faces.push((thing, side)),
+            (Some(LoadOn::Shells { shells, .. }), LoadOn::Shells { .. }) if fresh => shells.push(thing),
             _ => {
                 self.loads.insert(key, next);
                 self.on.insert((next, thing, side));
@@ -165,13 +206,18 @@ fn load(raw: &Raw, site: &Site, alike: &mut Alike, model: &mut Model) {
             }
             rotation(point_on, axes.vector(*axis, point_on), turns * site.factor, site.place, model);
         }
-        Raw::Pressure { elements, pressure, corners } => {
+        Raw::OnCorners { corners, pressure } => {
+            on_corners(corners, site.factor * pressure, site, alike, model)
+        }
+        Raw::Pressure { card, elements, pressure, corners } => {
             let pressure = site.factor * pressure;
-            for element in model.elements(elements, "PLOAD4", site.place) {
+            for element in model.elements(elements, card, site.place) {
                 let what = &model.deck.elements[element];
-                if what.kind.dimension() != 3 {
-                    let why = "pressures on shells are not read";
-                    model.notes.ledger.note(Weight::Perhaps, "PLOAD4", why, site.place);
+                if what.kind.dimension() == 2 {
+                    on_shell(element, pressure, site, alike, model);
+                } else if what.kind.dimension() != 3 || *card == "PLOAD2" {
+                    let why = "pressures on elements of this kind are not read";
+                    model.notes.ledger.note(Weight::Perhaps, *card, why, site.place);
                 } else if let Some(side) = side(element, *corners, model) {
                     let on = LoadOn::Faces { faces: vec![(element, side)], pressure };
                     alike.add([pressure, 0.0, 0.0], (element, side), on, site, &mut model.deck);
@@ -185,6 +231,68 @@ fn load(raw: &Raw, site: &Site, alike: &mut Alike, model: &mut Model) {
             }
         }
     }
+}
+
+/// A pressure along the normal of a shell.
+fn on_shell(shell: usize, pressure: f64, site: &Site, alike: &mut Alike, model: &mut Model) {
+    let on = LoadOn::Shells { shells: vec![shell], pressure };
+    alike.add([pressure, 0.0, 1.0], (shell, 0), on, site, &mut model.deck);
+}
+
+/// PLOAD: a pressure on the face of some corners, along its normal by the right hand about them. The face is that of a shell, or the side of a
+/// solid.
+fn on_corners(corners: &[u64], pressure: f64, site: &Site, alike: &mut Alike, model: &mut Model) {
+    let corners = corners.iter().map(|id| model.node(*id, "PLOAD", site.place));
+    let Some(corners) = corners.collect::<Option<Vec<usize>>>() else { return };
+    match alike.faces.get_or_insert_with(|| CornersOfFaces::of(&model.deck)).find(&corners) {
+        Some((element, None, same)) => {
+            on_shell(element, if same { pressure } else { -pressure }, site, alike, model);
+        }
+        Some((element, Some(side), same)) => {
+            // The sides of solids go round as seen from outside.
+            let pressure = if same { -pressure } else { pressure };
+            let on = LoadOn::Faces { faces: vec![(element, side)], pressure };
+            alike.add([pressure, 0.0, 0.0], (element, side), on, site, &mut model.deck);
+        }
+        None => {
+            let why = "a pressure on a face that no element has is not read";
+            model.notes.ledger.note(Weight::Matters, "PLOAD", why, site.place);
+        }
+    }
+}
+
+/// Shells, and sides of solids, by their corners.
+struct CornersOfFaces(HashMap<Vec<usize>, (usize, Option<usize>, [usize; 2])>);
+
+impl CornersOfFaces {
+    fn of(deck: &Deck) -> Self {
+        let mut found = HashMap::new();
+        let mut add = |corners: Vec<usize>, element: usize, side: Option<usize>| {
+            let first = [corners[0], corners[1]];
+            found.entry(ordered(corners)).or_insert((element, side, first));
+        };
+        let shells = deck.elements.iter().enumerate().filter(|(_, own)| own.kind.dimension() == 2);
+        shells.for_each(|(k, own)| add(own.nodes[..own.kind.n_corners()].to_vec(), k, None));
+        for (k, side) in outer_faces(&deck.elements, 0..deck.elements.len()) {
+            let (kind, nodes) = deck.elements[k].kind.table().sides[side];
+            let corners =
+                nodes[..kind.n_corners()].iter().map(|node| deck.elements[k].nodes[usize::from(*node)]);
+            add(corners.collect(), k, Some(side));
+        }
+        CornersOfFaces(found)
+    }
+
+    /// The element, its side if it is a solid, and whether it goes round its corners as these do.
+    fn find(&self, corners: &[usize]) -> Option<(usize, Option<usize>, bool)> {
+        let (element, side, [a, b]) = *self.0.get(&ordered(corners.to_vec()))?;
+        let at = corners.iter().position(|node| *node == a)?;
+        Some((element, side, corners[(at + 1) % corners.len()] == b))
+    }
+}
+
+fn ordered(mut nodes: Vec<usize>) -> Vec<usize> {
+    nodes.sort_unstable();
+    nodes
 }
 
 /// All elements turn about an axis of length R: so many times R revolutions a unit of time.

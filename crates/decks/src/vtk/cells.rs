@@ -18,7 +18,12 @@ pub(super) struct CellNumbers {
 }
 
 /// Reads the pieces.
-pub(super) fn read(grid: &Grid<'_>, unpacker: &mut Unpacker<'_>, deck: &mut Deck, files: &mut Files) -> CellNumbers {
+pub(super) fn read(
+    grid: &Grid<'_>,
+    unpacker: &mut Unpacker<'_>,
+    deck: &mut Deck,
+    files: &mut Files,
+) -> CellNumbers {
     let mut reader = Cells { unpacker, deck, files, names: BTreeMap::new(), numbers: CellNumbers::default() };
     grid.pieces.iter().for_each(|piece| reader.piece(piece));
     if grid.pieces.iter().filter(|piece| piece.n_cells > 0).count() > 1 {
@@ -50,7 +55,8 @@ impl Cells<'_, '_, '_> {
         let first = self.deck.nodes.len();
         let named = |name: &str| piece.arrays.iter().find(|array| array.name == name);
         let [connectivity, offsets, types] = ["connectivity", "offsets", "types"].map(named);
-        let points = piece.arrays.iter().find(|array| !["connectivity", "offsets", "types"].contains(&&*array.name));
+        let points =
+            piece.arrays.iter().find(|array| !["connectivity", "offsets", "types"].contains(&&*array.name));
         self.points(piece, points);
         let Some((connectivity, (offsets, types))) = self
             .whole(piece, "connectivity", connectivity, None)
@@ -109,7 +115,13 @@ impl Cells<'_, '_, '_> {
     }
 
     /// The whole numbers of an array of the cells.
-    fn whole(&mut self, piece: &Piece<'_>, name: &str, array: Option<&Array<'_>>, count: Option<usize>) -> Option<Vec<i64>> {
+    fn whole(
+        &mut self,
+        piece: &Piece<'_>,
+        name: &str,
+        array: Option<&Array<'_>>,
+        count: Option<usize>,
+    ) -> Option<Vec<i64>> {
         let expected = match count {
             Some(count) => format!("{count} whole numbers, one for each cell"),
             None => "whole numbers, the points of each cell".to_string(),
@@ -132,7 +144,9 @@ impl Cells<'_, '_, '_> {
 
     /// A cell of the points `first` to `first + count`.
     fn cell(&mut self, cell: usize, vtk: i64, own: &[i64], [first, count]: [usize; 2], place: Place) -> Made {
-        let node = |point: &i64| usize::try_from(*point).ok().filter(|point| *point < count).map(|point| first + point);
+        let node = |point: &i64| {
+            usize::try_from(*point).ok().filter(|point| *point < count).map(|point| first + point)
+        };
         let Some(nodes) = own.iter().map(node).collect::<Option<Vec<usize>>>() else {
             let point = own.iter().find(|point| node(point).is_none()).unwrap_or(&0);
             let found = format!("cell {cell} on point {point}, which is not there");
@@ -168,7 +182,8 @@ impl Cells<'_, '_, '_> {
     /// Whole numbers of the cells; others are noted.
     fn cell_data(&mut self, array: &Array<'_>, made: &[Made]) {
         let Array { name, place, .. } = array;
-        let whole = array.scalar.is_some_and(|scalar| scalar.kind != ScalarKind::Real) && array.components == 1;
+        let whole =
+            array.scalar.is_some_and(|scalar| scalar.kind != ScalarKind::Real) && array.components == 1;
         if !whole {
             let why = "only whole numbers, one a cell, are parts and sets";
             self.deck.ledger.note(Weight::Nothing, format!("CellData {name}"), why, *place);

@@ -14,7 +14,8 @@ const BASE64: GeneralPurpose = GeneralPurpose::new(
     &STANDARD,
     PAD.with_decode_allow_trailing_bits(true).with_decode_padding_mode(DecodePaddingMode::Indifferent),
 );
-/// Unpacked data are at most so many times as large as the file, places and nodes of a grid being packed by some ten times at most …
+/// Numbers of eight bytes are at most so many times as large as the file, also where arrays share their data: those of a grid, of types of one
+/// byte and of constants, are packed by some ten times …
 const MOST: usize = 64;
 /// … and this \[byte\].
 const LEAST: usize = 1 << 16;
@@ -27,7 +28,7 @@ pub(super) struct Unpacker<'a> {
     appended: Option<(&'a [u8], bool)>,
     /// Where appended arrays begin, ascending.
     offsets: Vec<usize>,
-    /// How many bytes may still be unpacked.
+    /// How many bytes may still be decoded.
     left: usize,
 }
 
@@ -72,7 +73,12 @@ impl<'a> Unpacker<'a> {
             return text(&array.text, scalar);
         }
         let stream = self.stream(array)?;
-        let bytes = if self.packed { self.unpacked(&stream)? } else { self.plain(&stream)? };
+        // Of a byte each may come a number of eight.
+        let growth = 8 / scalar.size;
+        let bytes = if self.packed { self.unpacked(&stream, growth)? } else { self.plain(&stream)? };
+        if !self.packed {
+            self.charge(bytes.len() * growth)?;
+        }
         if bytes.len() % scalar.size != 0 {
             return Err(format!("{} bytes, no whole numbers of {}", bytes.len(), scalar.size));
         }
@@ -85,7 +91,7 @@ impl<'a> Unpacker<'a> {
     }
 
     /// The bytes from the header of an array on; those of others may follow.
-    fn stream<'b>(&self, array: &'b Array<'_>) -> Result<Cow<'b, [u8]>, String>
+    fn stream<'b>(&mut self, array: &'b Array<'_>) -> Result<Cow<'b, [u8]>, String>
     where
         'a: 'b,
     {
@@ -97,11 +103,20 @@ impl<'a> Unpacker<'a> {
         if !encoded {
             return bytes.get(at..).map(Cow::Borrowed).ok_or_else(missing);
         }
-        let next = self.offsets.iter().copied().find(|next| *next > at);
-        let end = next.map_or(bytes.len(), |next| next.min(bytes.len()));
+        let next = self.offsets.get(self.offsets.partition_point(|other| *other <= at));
+        let end = next.map_or(bytes.len(), |next| (*next).min(bytes.len()));
         let own = bytes.get(at..end).ok_or_else(missing)?;
+        self.charge(own.len())?;
         let own = own.split(|byte| *byte == b'<').next().unwrap_or_default();
         decoded(own).map(Cow::Owned)
+    }
+
+    /// Counts bytes that are decoded.
+    fn charge(&mut self, bytes: usize) -> Result<(), String> {
+        self.left = self.left.checked_sub(bytes).ok_or_else(|| {
+            format!("data that unpack to {bytes} bytes, with the others more than {MOST} times the file")
+        })?;
+        Ok(())
     }
 
     /// The number of a header at a byte.
@@ -117,22 +132,20 @@ impl<'a> Unpacker<'a> {
         data.get(..size).map(Cow::Borrowed).ok_or_else(|| format!("{} of {size} bytes", data.len()))
     }
 
-    fn unpacked<'b>(&mut self, stream: &[u8]) -> Result<Cow<'b, [u8]>, String> {
+    fn unpacked<'b>(&mut self, stream: &[u8], growth: usize) -> Result<Cow<'b, [u8]>, String> {
         let [count, size, last] = [0, 1, 2].map(|k| self.size(stream, k * self.header));
         let (count, size, last) = (count?, size?, last?);
         let begin = count.checked_add(3).and_then(|numbers| numbers.checked_mul(self.header));
-        let mut begin = begin.filter(|begin| *begin <= stream.len()).ok_or_else(|| {
-            format!("{count} blocks, whose sizes {} bytes do not hold", stream.len())
-        })?;
+        let mut begin = begin
+            .filter(|begin| *begin <= stream.len())
+            .ok_or_else(|| format!("{count} blocks, whose sizes {} bytes do not hold", stream.len()))?;
         let mut data = Vec::new();
         for block in 0..count {
             let packed = self.size(stream, (3 + block) * self.header)?;
             let end = begin.checked_add(packed).filter(|end| *end <= stream.len());
             let end = end.ok_or_else(|| format!("a block of {packed} bytes, which is behind the end"))?;
             let expected = if block + 1 == count && last > 0 { last } else { size };
-            self.left = self.left.checked_sub(expected).ok_or_else(|| {
-                format!("a block that unpacks to {expected} bytes, more than {MOST} times the file")
-            })?;
+            self.charge(expected.saturating_mul(growth))?;
             let own = decompress_to_vec_zlib_with_limit(&stream[begin..end], expected)
                 .map_err(|error| format!("a block of zlib that does not unpack: {:?}", error.status))?;
             if own.len() != expected {

@@ -3,6 +3,7 @@
 use super::cells::CellNumbers;
 use crate::deck::{Deck, Element, Material, Place, Section, SectionShape, Set, Surface};
 use crate::ledger::Weight;
+use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
 /// Arrays that are known to number parts, the first first: of Gmsh, of results of stridor, of ParaView's readers, of MFEM and Medit.
@@ -14,7 +15,8 @@ const MOST: usize = 1000;
 /// Parts by the array that numbers them, sets by the other ones.
 pub(super) fn sections(numbers: CellNumbers, deck: &mut Deck) {
     let CellNumbers { arrays, points } = numbers;
-    let known = |name: &str| PARTS.iter().position(|own| own.eq_ignore_ascii_case(name)).unwrap_or(PARTS.len());
+    let known =
+        |name: &str| PARTS.iter().position(|own| own.eq_ignore_ascii_case(name)).unwrap_or(PARTS.len());
     let few = |(_, values): &(String, Vec<(usize, i64)>)| {
         let different: BTreeSet<i64> = values.iter().map(|(_, value)| *value).collect();
         different.len() <= MOST && (different.len() <= 8 || different.len() <= values.len() / 2)
@@ -27,16 +29,16 @@ pub(super) fn sections(numbers: CellNumbers, deck: &mut Deck) {
     }
     let parts = groups.iter().copied().min_by_key(|k| (known(&arrays[*k].0), *k));
     let sides = Sides::of(&deck.elements);
-    let mut by_part: BTreeMap<(Option<i64>, usize), Vec<usize>> = BTreeMap::new();
+    let mut by_part: BTreeMap<(Reverse<usize>, Option<i64>), Vec<usize>> = BTreeMap::new();
     let mut of: Vec<Option<i64>> = vec![None; deck.elements.len()];
     for (element, value) in parts.iter().flat_map(|k| &arrays[*k].1) {
         of[*element] = Some(*value);
     }
     for (element, value) in of.into_iter().enumerate() {
         let dimension = deck.elements[element].kind.dimension();
-        by_part.entry((value, dimension)).or_default().push(element);
+        by_part.entry((Reverse(dimension), value)).or_default().push(element);
     }
-    for ((value, dimension), elements) in by_part.into_iter().rev() {
+    for ((Reverse(dimension), value), elements) in by_part {
         let name = match (parts, value) {
             (Some(k), Some(value)) => name(&arrays[k].0, value),
             (Some(_), None) => "other".to_string(),
@@ -47,6 +49,7 @@ pub(super) fn sections(numbers: CellNumbers, deck: &mut Deck) {
             section(name, dimension, rest, deck);
         }
     }
+    let known: HashSet<Vec<usize>> = deck.sections.iter().map(|section| section.elements.clone()).collect();
     for k in groups.into_iter().filter(|k| Some(*k) != parts) {
         let mut by_value: BTreeMap<(i64, usize), Vec<usize>> = BTreeMap::new();
         for (element, value) in &arrays[k].1 {
@@ -55,8 +58,7 @@ pub(super) fn sections(numbers: CellNumbers, deck: &mut Deck) {
         for ((value, dimension), elements) in by_value {
             let name = name(&arrays[k].0, value);
             let members = sides.named(&name, dimension, elements, deck);
-            let known = deck.sections.iter().any(|section| section.elements == members);
-            if !members.is_empty() && !known {
+            if !members.is_empty() && !known.contains(&members) {
                 deck.element_sets.push(Set { name, members, internal: false });
             }
         }
@@ -117,9 +119,12 @@ impl Sides {
             }
         }
         let mut own = Sides { sides: HashMap::new(), edges: HashSet::new() };
-        for (index, element) in elements.iter().enumerate().filter(|(_, element)| element.kind.dimension() > 1) {
+        for (index, element) in
+            elements.iter().enumerate().filter(|(_, element)| element.kind.dimension() > 1)
+        {
             for (side, (kind, nodes)) in element.kind.table().sides.iter().enumerate() {
-                let corners = || nodes[..kind.n_corners()].iter().map(|node| element.nodes[usize::from(*node)]);
+                let corners =
+                    || nodes[..kind.n_corners()].iter().map(|node| element.nodes[usize::from(*node)]);
                 if element.kind.dimension() == 3 && !faces.is_empty() {
                     for face in faces.get(&ordered(corners())).into_iter().flatten() {
                         own.sides.entry(*face).or_insert((index, side));

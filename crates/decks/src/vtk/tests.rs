@@ -32,8 +32,15 @@ struct Form {
     wide_header: bool,
 }
 
-const TEXT: Form =
-    Form { text: true, appended: false, encoded: true, packed: false, apart: false, big_endian: false, wide_header: false };
+const TEXT: Form = Form {
+    text: true,
+    appended: false,
+    encoded: true,
+    packed: false,
+    apart: false,
+    big_endian: false,
+    wide_header: false,
+};
 
 /// An array: its element's attributes, numbers as text, their size in bytes, whether they are real.
 type Array<'a> = (&'a str, &'a str, usize, bool);
@@ -104,7 +111,10 @@ fn element(form: Form, (attributes, text, size, real): Array<'_>, appended: &mut
     let (header, data) = if form.packed {
         let blocks: Vec<Vec<u8>> = data.chunks(16).map(|block| compress_to_vec_zlib(block, 6)).collect();
         let sizes = blocks.iter().map(Vec::len);
-        (header(&[blocks.len(), 16, data.len() % 16].into_iter().chain(sizes).collect::<Vec<_>>()), blocks.concat())
+        (
+            header(&[blocks.len(), 16, data.len() % 16].into_iter().chain(sizes).collect::<Vec<_>>()),
+            blocks.concat(),
+        )
     } else {
         (header(&[data.len()]), data)
     };
@@ -118,7 +128,10 @@ fn element(form: Form, (attributes, text, size, real): Array<'_>, appended: &mut
         appended.extend(bytes);
         return format!("<DataArray {attributes} format=\"appended\" offset=\"{offset}\"/>\n");
     }
-    format!("<DataArray {attributes} format=\"binary\">\n  {}\n</DataArray>\n", String::from_utf8(bytes).unwrap())
+    format!(
+        "<DataArray {attributes} format=\"binary\">\n  {}\n</DataArray>\n",
+        String::from_utf8(bytes).unwrap()
+    )
 }
 
 /// All forms that VTK, ParaView and meshio write.
@@ -140,12 +153,19 @@ fn all_forms_of_a_file_are_the_same_grid() {
     let deck = sound(&file(TEXT));
     assert_eq!((deck.nodes.len(), deck.nodes[11].position), (12, [2.0, 1.0, 1.0]));
     let kinds: Vec<CellKind> = deck.elements.iter().map(|element| element.kind).collect();
-    assert_eq!(kinds, [CellKind::Hexahedron8, CellKind::Hexahedron8, CellKind::Quadrilateral4, CellKind::Line2]);
+    assert_eq!(
+        kinds,
+        [CellKind::Hexahedron8, CellKind::Hexahedron8, CellKind::Quadrilateral4, CellKind::Line2]
+    );
     assert_eq!(deck.elements[1].nodes, [1, 2, 5, 4, 7, 8, 11, 10]);
-    let sections: Vec<_> = deck.sections.iter().map(|own| (own.name.as_str(), own.elements.as_slice())).collect();
-    assert_eq!(sections, [("gmsh_physical_7", &[0][..]), ("gmsh_physical_-8", &[1][..])]);
+    let sections: Vec<_> =
+        deck.sections.iter().map(|own| (own.name.as_str(), own.elements.as_slice())).collect();
+    assert_eq!(sections, [("gmsh_physical_-8", &[1][..]), ("gmsh_physical_7", &[0][..])]);
     // The face at x = 0 is the side of the first brick with the corners 3, 0, 4, 7; the line is an edge of it.
-    assert_eq!((deck.surfaces[0].name.as_str(), &deck.surfaces[0].faces[..]), ("gmsh_physical_1", &[(0, 5)][..]));
+    assert_eq!(
+        (deck.surfaces[0].name.as_str(), &deck.surfaces[0].faces[..]),
+        ("gmsh_physical_1", &[(0, 5)][..])
+    );
     let sets: Vec<_> = deck.node_sets.iter().map(|own| (own.name.as_str(), own.members.as_slice())).collect();
     assert_eq!(sets, [("gmsh_physical_2", &[0, 1][..]), ("gmsh_physical_3", &[2][..])]);
     let notes: Vec<_> = deck.ledger.rows().map(|row| (row.weight, row.what)).collect();
@@ -156,9 +176,14 @@ fn all_forms_of_a_file_are_the_same_grid() {
         let other = sound(&file(form));
         let places = |deck: &Deck| deck.nodes.iter().map(|node| node.position).collect::<Vec<_>>();
         assert_eq!(places(&other), places(&deck), "{form:?}");
-        let elements = |deck: &Deck| deck.elements.iter().map(|own| (own.kind, own.nodes.clone())).collect::<Vec<_>>();
+        let elements =
+            |deck: &Deck| deck.elements.iter().map(|own| (own.kind, own.nodes.clone())).collect::<Vec<_>>();
         assert_eq!(elements(&other), elements(&deck), "{form:?}");
-        assert_eq!((other.surfaces, other.node_sets), (deck.surfaces.clone(), deck.node_sets.clone()), "{form:?}");
+        assert_eq!(
+            (other.surfaces, other.node_sets),
+            (deck.surfaces.clone(), deck.node_sets.clone()),
+            "{form:?}"
+        );
     }
 }
 
@@ -216,9 +241,16 @@ fn sets_of_other_arrays_and_shells_without_a_thickness_are_in_the_case() {
     let mut deck = sound(&grid(points, cells, &data));
     assert_eq!(deck.sections.iter().map(|own| own.name.as_str()).collect::<Vec<_>>(), ["part_0"]);
     assert_eq!(deck.node_sets[0].name, "part_1");
-    assert_eq!(deck.element_sets.iter().map(|own| own.name.as_str()).collect::<Vec<_>>(), ["zone_4", "zone_5"]);
+    assert_eq!(
+        deck.element_sets.iter().map(|own| own.name.as_str()).collect::<Vec<_>>(),
+        ["zone_4", "zone_5"]
+    );
     // Nodes by themselves: the line is a bar.
-    deck = sound(&grid(&format!("{points} 5 5 5"), [&cells[0].replace("5 2", "5 6"), cells[1], cells[2]], &data));
+    deck = sound(&grid(
+        &format!("{points} 5 5 5"),
+        [&cells[0].replace("5 2", "5 6"), cells[1], cells[2]],
+        &data,
+    ));
     let made = convert(&deck, Units::named("m").unwrap()).unwrap_or_else(|error| panic!("{error}"));
     for words in [
         "# The file has no thickness: give one.\n# The file has no elastic constants: add [material.part_0].\n[shell.part_0]\n",
@@ -247,7 +279,11 @@ fn faults_come_at_once_with_their_lines() {
         ("2 1 1\n", "2 1 nan\n", "the coordinate NaN of point 11"),
         ("Name=\"types\"", "Name=\"kinds\"", "no array `types`"),
         ("format=\"ascii\"", "format=\"hex\"", "format `hex`"),
-        ("type=\"UnstructuredGrid\"", "compressor=\"vtkLZ4DataCompressor\"", "compressor `vtkLZ4DataCompressor`"),
+        (
+            "type=\"UnstructuredGrid\"",
+            "compressor=\"vtkLZ4DataCompressor\"",
+            "compressor `vtkLZ4DataCompressor`",
+        ),
         ("UnstructuredGrid>", "PolyData>", "a file without a grid"),
         ("</Cells>", "</Cell>", "what is no XML"),
     ] {
@@ -262,6 +298,17 @@ fn faults_come_at_once_with_their_lines() {
     let start = STANDARD.encode([18_u32, 16, 0].map(u32::to_le_bytes).concat());
     assert!(text.contains(&start));
     let faults = found(text.replace(&start, &header(u32::MAX)).as_bytes());
+    assert!(faults.contains("more than 64 times the file"), "{faults}");
+    // Arrays that share a block of data.
+    let bytes = file(Form { appended: true, text: false, ..TEXT });
+    let text = String::from_utf8(bytes).unwrap();
+    let (head, data) = text.split_once("encoding=\"base64\">\n _").unwrap();
+    let (data, tail) = data.split_once('\n').unwrap();
+    let block = STANDARD.encode([&100_000_u32.to_le_bytes()[..], &[7; 100_000]].concat());
+    let array =
+        format!("<DataArray type=\"UInt8\" Name=\"a\" format=\"appended\" offset=\"{}\"/>\n", data.len());
+    let head = head.replace("<CellData>", &format!("<CellData>{}", array.repeat(100)));
+    let faults = found(format!("{head}encoding=\"base64\">\n _{data}{block}\n{tail}").as_bytes());
     assert!(faults.contains("more than 64 times the file"), "{faults}");
 }
 

@@ -70,13 +70,10 @@ pub(super) enum ScalarKind {
 
 impl Scalar {
     fn named(name: &str) -> Option<Scalar> {
-        let (kind, bits) = [
-            ("UInt", ScalarKind::Unsigned),
-            ("Int", ScalarKind::Signed),
-            ("Float", ScalarKind::Real),
-        ]
-        .into_iter()
-        .find_map(|(word, kind)| Some((kind, name.strip_prefix(word)?.parse::<usize>().ok()?)))?;
+        let (kind, bits) =
+            [("UInt", ScalarKind::Unsigned), ("Int", ScalarKind::Signed), ("Float", ScalarKind::Real)]
+                .into_iter()
+                .find_map(|(word, kind)| Some((kind, name.strip_prefix(word)?.parse::<usize>().ok()?)))?;
         let sizes: &[usize] = if kind == ScalarKind::Real { &[32, 64] } else { &[8, 16, 32, 64] };
         sizes.contains(&bits).then_some(Scalar { kind, size: bits / 8 })
     }
@@ -90,19 +87,21 @@ pub(super) fn read<'a>(bytes: &'a [u8], file: u32, files: &mut Files, deck: &mut
         deck,
         grid: Grid { header: 4, ..Grid::default() },
         seen: false,
+        unreadable: false,
         section: Section::Other,
         open: None,
         line: 1,
         at: 0,
     };
     let sound = elements.read(bytes);
-    let (seen, place) = (elements.seen, elements.place());
+    let (seen, unreadable, place) = (elements.seen, elements.unreadable, elements.place());
     let grid = elements.grid;
     if sound && !seen {
-        let help = "Other files of VTK, such as legacy ones (.vtk), become one in ParaView, or by `meshio convert`";
+        let help =
+            "Other files of VTK, such as legacy ones (.vtk), become one in ParaView, or by `meshio convert`";
         files.fault_with_help(place, "a file without a grid", "an unstructured grid of VTK (.vtu)", help);
     }
-    (sound && seen).then_some(grid)
+    (sound && seen && !unreadable).then_some(grid)
 }
 
 /// Where arrays stand.
@@ -122,6 +121,8 @@ struct Elements<'a, 'f> {
     grid: Grid<'a>,
     /// Whether `UnstructuredGrid` has come.
     seen: bool,
+    /// Whether no data can be read.
+    unreadable: bool,
     section: Section,
     /// The array that is open.
     open: Option<Array<'a>>,
@@ -139,18 +140,26 @@ impl<'a> Elements<'a, '_> {
         let mut reader = Reader::from_reader(bytes);
         loop {
             let event = reader.read_event();
-            let end = usize::try_from(reader.buffer_position()).map_or(bytes.len(), |end| end.min(bytes.len()));
+            let end =
+                usize::try_from(reader.buffer_position()).map_or(bytes.len(), |end| end.min(bytes.len()));
             let event = match event {
                 Ok(event) => event,
                 Err(error) => {
                     let help = "A legacy file (.vtk) becomes one in ParaView, or by `meshio convert`";
                     let found = format!("what is no XML: {error}");
-                    self.files.fault_with_help(self.place(), found, "an unstructured grid of VTK (.vtu)", help);
+                    self.files.fault_with_help(
+                        self.place(),
+                        found,
+                        "an unstructured grid of VTK (.vtu)",
+                        help,
+                    );
                     return false;
                 }
             };
             match event {
-                Event::Start(element) | Event::Empty(element) if element.name().as_ref() == b"AppendedData" => {
+                Event::Start(element) | Event::Empty(element)
+                    if element.name().as_ref() == b"AppendedData" =>
+                {
                     let encoded = attribute(&element, "encoding").is_none_or(|word| word != "raw");
                     let rest = bytes[end..].trim_ascii_start();
                     self.grid.appended = Some((rest.strip_prefix(b"_").unwrap_or(rest), encoded));
@@ -186,7 +195,8 @@ impl<'a> Elements<'a, '_> {
         match element.name().as_ref() {
             b"VTKFile" => {
                 self.grid.big_endian = word("byte_order").is_some_and(|word| word == "BigEndian");
-                self.grid.header = if word("header_type").is_some_and(|word| word == "UInt64") { 8 } else { 4 };
+                self.grid.header =
+                    if word("header_type").is_some_and(|word| word == "UInt64") { 8 } else { 4 };
                 self.grid.packed = match word("compressor") {
                     None => false,
                     Some(name) if name.is_empty() || name == "vtkZLibDataCompressor" => !name.is_empty(),
@@ -194,6 +204,7 @@ impl<'a> Elements<'a, '_> {
                         let help = "Write it again with the compressor zlib, or without one";
                         let expected = "no compressor, or vtkZLibDataCompressor";
                         self.files.fault_with_help(place, format!("compressor `{name}`"), expected, help);
+                        self.unreadable = true;
                         true
                     }
                 };
@@ -260,7 +271,9 @@ impl<'a> Elements<'a, '_> {
         match name {
             b"Points" | b"Cells" | b"CellData" | b"PointData" | b"FieldData" => self.section = Section::Other,
             b"DataArray" | b"Array" => {
-                let (Some(array), Some(piece)) = (self.open.take(), self.grid.pieces.last_mut()) else { return };
+                let (Some(array), Some(piece)) = (self.open.take(), self.grid.pieces.last_mut()) else {
+                    return;
+                };
                 match self.section {
                     Section::CellData => piece.cell_data.push(array),
                     _ => piece.arrays.push(array),

@@ -28,6 +28,19 @@ fn forces_and_pressures_are_read() {
     assert_eq!(notes(&steps)[0].1, "*STEP");
 }
 
+/// Along the normal with P, upon the face that a surface names; of single elements a load.
+#[test]
+fn pressures_on_shells_have_a_side() {
+    let deck = deck(
+        "*NODE\n1, 0, 0, 0\n2, 1, 0, 0\n3, 1, 1, 0\n4, 0, 1, 0\n5, 2, 0, 0\n6, 2, 1, 0\n*ELEMENT, TYPE=S4, ELSET=EALL\n1, 1,2,3,4\n2, 2,5,6,3\n\
+         *SURFACE, NAME=Both\n1, SPOS\n2, SNEG\n*STEP\n*DLOAD\n1, P, 7.\n2, P, 7.\n1, P, 7.\nEALL, P2, 8.\n1, P3, 9.\n*DSLOAD\nBoth, P, 4.\n*END STEP\n",
+    );
+    let on = |shells: &[usize], pressure: f64| LoadOn::Shells { shells: shells.to_vec(), pressure };
+    let loads: Vec<_> = deck.loads.iter().map(|load| load.on.clone()).collect();
+    assert_eq!(loads, [on(&[0, 1], 7.0), on(&[0], 7.0), on(&[0, 1], 8.0), on(&[0], -4.0), on(&[1], 4.0)]);
+    assert!(notes(&deck).iter().any(|(weight, what, _)| (*weight, *what) == (Weight::Matters, "*DLOAD, P3")));
+}
+
 /// ω² about an axis through a point; an angular velocity about two points, or two nodes.
 #[test]
 fn rotations_are_read() {

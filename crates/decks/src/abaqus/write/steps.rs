@@ -54,6 +54,13 @@ impl Writer<'_> {
                         }
                     }
                 }
+                LoadOn::Shells { shells, pressure } => {
+                    self.line("*DLOAD");
+                    for shell in shells {
+                        let own = self.element_numbers[*shell];
+                        self.line(format!("{own}, P, {}", number(*pressure)));
+                    }
+                }
                 LoadOn::Faces { faces, pressure } => {
                     self.line("*DLOAD");
                     for (element, side) in faces {

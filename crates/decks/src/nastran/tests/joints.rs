@@ -116,6 +116,26 @@ fn equal_forces_are_one_load() {
     assert_eq!(loads, [on(&[0, 1], 2.0), on(&[0, 2], 2.0), on(&[3], 3.0)]);
 }
 
+/// Along the normal of plates; of PLOAD along that of its points, inwards on solids where they go round as seen from inside.
+#[test]
+fn pressures_on_plates_and_on_points() {
+    let plate = "CQUAD4,20,2,5,6,7,8\nPSHELL,2,1,1.\nMAT1,1,2.+5,,.3,1.-9\n";
+    let found = deck(&format!(
+        "{CUBE}{plate}PLOAD2,1,2.,20\nPLOAD4,1,20,3.\nPLOAD,1,4.,6,5,8,7\nPLOAD,1,5.,1,2,3,4\nPLOAD,1,5.,4,3,2,1\nPLOAD,1,5.,1,2,7\n"
+    ));
+    let loads: Vec<_> = found.loads.iter().map(|load| load.on.clone()).collect();
+    let shell = found.elements.iter().position(|element| element.number == 20).unwrap();
+    let on = |pressure: f64| LoadOn::Shells { shells: vec![shell], pressure };
+    assert_eq!(loads[..3], [on(2.0), on(3.0), on(-4.0)]);
+    let pressures: Vec<f64> = loads[3..]
+        .iter()
+        .map(|on| if let LoadOn::Faces { pressure, .. } = on { *pressure } else { f64::NAN })
+        .collect();
+    // The lower side is seen from outside as 4, 3, 2, 1: that way round the normal points outwards.
+    assert_eq!(pressures, [5.0, -5.0]);
+    assert!(notes(&found, Weight::Matters, "PLOAD", "no element has"));
+}
+
 #[test]
 fn pressures_and_rotations() {
     // The top of the cube: corners 5 and 7; all of a range, of which none but the first says a face.

@@ -142,6 +142,12 @@ impl Writer<'_> {
                         self.card("FORCE", &[Integer(SET), self.node(*node), Blank, Real(1.0), x, y, z]);
                     }
                 }
+                LoadOn::Shells { shells, pressure } => {
+                    for shell in shells {
+                        let element = Integer(self.element_numbers[*shell]);
+                        self.card("PLOAD2", &[Integer(SET), Real(*pressure), element]);
+                    }
+                }
                 LoadOn::Faces { faces, pressure } => {
                     for (index, side) in faces {
                         self.pressure(*index, *side, *pressure);
