@@ -18,11 +18,9 @@ pub fn mesh_text(
     blocks: Vec<Block<'_>>,
     regions: Vec<(String, usize, Vec<usize>)>,
 ) -> PyResult<String> {
-    let nodes = points
-        .as_array()
-        .rows()
-        .into_iter()
-        .map(|at| std::array::from_fn(|k| at.get(k).copied().unwrap_or(0.0)));
+    let points = points.as_array();
+    let nodes = points.rows().into_iter();
+    let nodes = nodes.map(|at| std::array::from_fn(|k| at.get(k).copied().unwrap_or(0.0)));
     let mut mesh = Mesh { nodes: nodes.collect(), ..Mesh::default() };
     let mut faults = Faults::new();
     for (index, (number, rows)) in blocks.iter().enumerate() {

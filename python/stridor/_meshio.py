@@ -70,7 +70,8 @@ def _regions(mesh: meshio.Mesh) -> tuple[list[int], list[tuple[str, int, list[in
         if not name.startswith("gmsh:"):
             for block, cells in enumerate(of_blocks):
                 add(name, block, [] if cells is None else cells)
-    named = {(int(tag), int(dim)): name for name, (tag, dim) in mesh.field_data.items() if name not in mesh.cell_sets}
+    groups = {name: np.asarray(own) for name, own in mesh.field_data.items() if np.size(own) == 2}
+    named = {(int(tag), int(dim)): name for name, (tag, dim) in groups.items() if name not in mesh.cell_sets}
     known = {name for name, _ in found}
     for block, tags in enumerate(mesh.cell_data.get("gmsh:physical", [])):
         for tag in np.unique(tags):

@@ -57,7 +57,7 @@ const FORMATS: &[Row] = &[
         read: crate::nastran::read,
         write: Some(crate::nastran::write),
     },
-    Row { format: Format::Vtk, name: "vtk", endings: &["vtu"], read: crate::vtk::read, write: None },
+    Row { format: Format::Vtk, name: "vtk", endings: &["vtu", "vtk"], read: crate::vtk::read, write: None },
 ];
 
 impl Format {

@@ -1,7 +1,7 @@
 //! Nodes and elements of all pieces, and the whole numbers of their cells.
 
 use super::data::{Numbers, Unpacker};
-use super::xml::{Array, Grid, Piece, ScalarKind};
+use super::grid::{Array, Grid, Piece, ScalarKind};
 use crate::deck::{Deck, Element, Node, Place};
 use crate::ledger::Weight;
 use crate::text::Files;

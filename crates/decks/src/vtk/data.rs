@@ -3,7 +3,7 @@
 //! In front of plain data is their length in bytes; in front of packed ones how many blocks there are, the size of each and of the last
 //! before packing (0: like the others), and of each after it.
 
-use super::xml::{Array, Format, Grid, Scalar, ScalarKind};
+use super::grid::{Array, Format, Grid, Scalar, ScalarKind};
 use base64::alphabet::STANDARD;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, general_purpose::PAD};
 use miniz_oxide::inflate::decompress_to_vec_zlib_with_limit;
@@ -72,10 +72,14 @@ impl<'a> Unpacker<'a> {
         if array.format == Format::Text {
             return text(&array.text, scalar);
         }
-        let stream = self.stream(array)?;
         // Of a byte each may come a number of eight.
         let growth = 8 / scalar.size;
-        let bytes = if self.packed { self.unpacked(&stream, growth)? } else { self.plain(&stream)? };
+        let stream = self.stream(array)?;
+        let bytes = match array.format {
+            Format::Bytes => Cow::Borrowed(&stream[..]),
+            _ if self.packed => self.unpacked(&stream, growth)?,
+            _ => self.plain(&stream)?,
+        };
         if !self.packed {
             self.charge(bytes.len() * growth)?;
         }
@@ -95,7 +99,11 @@ impl<'a> Unpacker<'a> {
     where
         'a: 'b,
     {
-        let Format::Appended(at) = array.format else { return decoded(&array.text).map(Cow::Owned) };
+        let at = match array.format {
+            Format::Appended(at) => at,
+            Format::Bytes => return Ok(Cow::Borrowed(&array.text)),
+            Format::Base64 | Format::Text => return decoded(&array.text).map(Cow::Owned),
+        };
         let Some((bytes, encoded)) = self.appended else {
             return Err("data that are appended, but no AppendedData".into());
         };

@@ -1,18 +1,19 @@
-//! Unstructured grids of VTK (`.vtu`), as VTK, ParaView, PyVista and meshio write them (*VTK File Formats*, XML formats).
+//! Unstructured grids of VTK, as VTK, ParaView, PyVista and meshio write them (*VTK File Formats*): XML files (`.vtu`) and legacy ones (`.vtk`).
 //!
-//! | element of the file | read |
+//! | in the file | read |
 //! |---|---|
-//! | `Points`, `Cells` of all pieces | yes |
-//! | `CellData` of whole numbers | their values are parts and sets |
-//! | `CellData` of real numbers, `PointData`, `FieldData` | no |
+//! | points and cells, of all pieces | yes |
+//! | whole numbers of cells | their values are parts and sets |
+//! | real numbers of cells, numbers of points and of the whole grid | no |
 //!
-//! Arrays are text, base64 or raw bytes, plain or packed by zlib. The program's own writer, `vtkio`, reads no raw bytes and no bundle of
-//! zlib as it is built here, ends the process on damaged bytes, and knows no lines: so elements come from `quick-xml`, bytes from `base64`
-//! and `miniz_oxide`.
+//! Arrays are text, base64 or raw bytes, plain or packed by zlib. `vtkio`, which writes grids here, takes no raw bytes in XML files, ends the
+//! process on damaged ones, and gives faults without lines: so elements come from `quick-xml`, bytes from `base64` and `miniz_oxide`.
 
 mod cells;
 mod data;
+mod grid;
 mod groups;
+mod legacy;
 #[cfg(test)]
 mod tests;
 mod xml;
@@ -30,7 +31,8 @@ use stridor_base::error::Result;
 pub(crate) fn read(path: &Path, files: &mut Files) -> Result<Deck> {
     let (file, bytes) = files.read_bytes(path)?;
     let mut deck = Deck::default();
-    let Some(grid) = xml::read(&bytes, file, files, &mut deck) else { return Ok(deck) };
+    let read = if bytes.starts_with(b"# vtk DataFile") { legacy::read } else { xml::read };
+    let Some(grid) = read(&bytes, file, files, &mut deck) else { return Ok(deck) };
     let mut unpacker = Unpacker::new(&grid, bytes.len());
     let numbers = cells::read(&grid, &mut unpacker, &mut deck, files);
     groups::sections(numbers, &mut deck);

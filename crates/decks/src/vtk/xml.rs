@@ -1,83 +1,12 @@
 //! The elements of a file, and where the data of its arrays are.
 
+use super::grid::{Array, Format, Grid, Piece, Scalar};
 use crate::deck::{Deck, Place};
 use crate::ledger::Weight;
 use crate::text::Files;
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 use std::borrow::Cow;
-
-/// A file.
-#[derive(Debug, Default)]
-pub(super) struct Grid<'a> {
-    pub big_endian: bool,
-    /// Bytes of a number in front of data: 4 or 8.
-    pub header: usize,
-    pub packed: bool,
-    pub pieces: Vec<Piece<'a>>,
-    /// What stands behind `_` of `AppendedData`, to the end of the file, and whether it is base64.
-    pub appended: Option<(&'a [u8], bool)>,
-}
-
-/// A piece of the grid.
-#[derive(Debug)]
-pub(super) struct Piece<'a> {
-    pub n_points: usize,
-    pub n_cells: usize,
-    /// `Points` and `Cells`.
-    pub arrays: Vec<Array<'a>>,
-    /// `CellData`.
-    pub cell_data: Vec<Array<'a>>,
-    pub place: Place,
-}
-
-/// An array.
-#[derive(Debug, Clone)]
-pub(super) struct Array<'a> {
-    pub name: String,
-    /// The type of its numbers, if it is one that there is.
-    pub scalar: Option<Scalar>,
-    pub components: usize,
-    pub format: Format,
-    /// What stands in it.
-    pub text: Cow<'a, [u8]>,
-    pub place: Place,
-}
-
-/// Where the data of an array are.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Format {
-    Text,
-    Base64,
-    /// At this byte of the appended data.
-    Appended(usize),
-}
-
-/// The type of numbers.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Scalar {
-    pub kind: ScalarKind,
-    /// Its bytes.
-    pub size: usize,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum ScalarKind {
-    Signed,
-    Unsigned,
-    Real,
-}
-
-impl Scalar {
-    fn named(name: &str) -> Option<Scalar> {
-        let (kind, bits) =
-            [("UInt", ScalarKind::Unsigned), ("Int", ScalarKind::Signed), ("Float", ScalarKind::Real)]
-                .into_iter()
-                .find_map(|(word, kind)| Some((kind, name.strip_prefix(word)?.parse::<usize>().ok()?)))?;
-        let sizes: &[usize] = if kind == ScalarKind::Real { &[32, 64] } else { &[8, 16, 32, 64] };
-        sizes.contains(&bits).then_some(Scalar { kind, size: bits / 8 })
-    }
-}
 
 /// Reads the elements; none where the file is none of an unstructured grid, which is a fault.
 pub(super) fn read<'a>(bytes: &'a [u8], file: u32, files: &mut Files, deck: &mut Deck) -> Option<Grid<'a>> {
@@ -97,8 +26,7 @@ pub(super) fn read<'a>(bytes: &'a [u8], file: u32, files: &mut Files, deck: &mut
     let (seen, unreadable, place) = (elements.seen, elements.unreadable, elements.place());
     let grid = elements.grid;
     if sound && !seen {
-        let help =
-            "Other files of VTK, such as legacy ones (.vtk), become one in ParaView, or by `meshio convert`";
+        let help = "Other files of VTK become one in ParaView";
         files.fault_with_help(place, "a file without a grid", "an unstructured grid of VTK (.vtu)", help);
     }
     (sound && seen && !unreadable).then_some(grid)
@@ -145,14 +73,8 @@ impl<'a> Elements<'a, '_> {
             let event = match event {
                 Ok(event) => event,
                 Err(error) => {
-                    let help = "A legacy file (.vtk) becomes one in ParaView, or by `meshio convert`";
                     let found = format!("what is no XML: {error}");
-                    self.files.fault_with_help(
-                        self.place(),
-                        found,
-                        "an unstructured grid of VTK (.vtu)",
-                        help,
-                    );
+                    self.files.fault(self.place(), found, "an unstructured grid of VTK");
                     return false;
                 }
             };
