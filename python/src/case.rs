@@ -136,6 +136,12 @@ impl Case {
         raised(py, warnings)
     }
 
+    /// The mesh with its regions.
+    fn mesh<'py>(&self, py: Python<'py>) -> PyResult<pyo3::Bound<'py, PyDict>> {
+        let mesh = py.detach(|| Prepared::new(&self.inner).map(|prepared| prepared.regions.mesh));
+        crate::mesh::arrays(py, &*raised(py, mesh)?)
+    }
+
     /// M, C, K, the load, the degrees of freedom and the contact points.
     fn model<'py>(&self, py: Python<'py>) -> PyResult<pyo3::Bound<'py, PyDict>> {
         let parts = py.detach(|| Parts::of(&Prepared::new(&self.inner)?));

@@ -1,8 +1,9 @@
-//! Meshes of Python as Gmsh files.
+//! Meshes of Python as Gmsh files, and meshes as arrays.
 
 use crate::errors::raised;
-use numpy::PyReadonlyArray2;
+use numpy::{IntoPyArray, PyReadonlyArray2};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use stridor::error::{Error, Fault, Faults, Result};
 use stridor::mesh::{Cell, CellKind, Mesh, Region, to_msh_exactly};
 
@@ -40,6 +41,26 @@ pub fn mesh_text(
     mesh.regions = regions.collect();
     let text = faults.into_result(()).and_then(|()| py.detach(|| text(&mesh)));
     raised(py, text)
+}
+
+/// A dict of arrays, named as the geometry of results: places, and of each cell VTK's type and its nodes in VTK's order; and the regions.
+pub fn arrays<'py>(py: Python<'py>, mesh: &Mesh) -> PyResult<Bound<'py, PyDict>> {
+    let kinds: Vec<i64> =
+        mesh.elements.iter().map(|cell| i64::from(cell.kind().table().vtk.number)).collect();
+    let nodes: Vec<i64> = mesh.elements.iter().flat_map(Cell::to_vtk).map(|node| node as i64).collect();
+    let mut offsets = vec![0];
+    offsets.extend(mesh.elements.iter().scan(0, |end, cell| {
+        *end += cell.nodes().len() as i64;
+        Some(*end)
+    }));
+    let regions = mesh.regions.iter().map(|own| (&own.name, own.dimension, own.elements.clone()));
+    let dict = PyDict::new(py);
+    dict.set_item("nodes", mesh.nodes.iter().flatten().copied().collect::<Vec<f64>>().into_pyarray(py))?;
+    dict.set_item("element_kind", kinds.into_pyarray(py))?;
+    dict.set_item("element_nodes", nodes.into_pyarray(py))?;
+    dict.set_item("element_offsets", offsets.into_pyarray(py))?;
+    dict.set_item("regions", regions.collect::<Vec<_>>())?;
+    Ok(dict)
 }
 
 /// The cell of a row of a block.

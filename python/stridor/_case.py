@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from . import _native
 from ._errors import CaseWarning, InputError
-from ._meshio import gmsh_text
+from ._meshio import gmsh_text, of_mesh
 from ._model import Model
 from ._progress import Observe, observed
 from ._results import Results, open_results
@@ -163,6 +163,10 @@ class Case:
         Returns sentences that the user should know. Raises :class:`InputError` with all faults.
         """
         return self._native.check()
+
+    def to_meshio(self) -> meshio.Mesh:
+        """The mesh [m] as an object of meshio, with the regions as sets of cells and of points."""
+        return of_mesh(self._native.mesh())
 
     def model(self) -> Model:
         """M, C, K, the load, the degrees of freedom and the contact points."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import numpy.typing as npt
 import xarray as xr
 
 from . import _native
@@ -35,10 +36,6 @@ _VTK = {
     "wedge18": 32,
 }
 _WEDGE = [0, 2, 1, 3, 5, 4]
-
-
-def _of_number(number: int) -> str:
-    return next(name for name, own in _VTK.items() if own == number)
 
 
 def gmsh_text(mesh: meshio.Mesh, length: float) -> str:
@@ -99,27 +96,48 @@ def _regions(mesh: meshio.Mesh) -> tuple[list[int], list[tuple[str, int, list[in
 
 def of_geometry(geometry: xr.Dataset, point_data: dict[str, Any]) -> meshio.Mesh:
     """The mesh of the geometry of results, with its parts as sets of cells."""
+    parts = geometry["element_part"].values
+    names = [str(name) for name in geometry["part_names"].values]
+    sets = {name: np.flatnonzero(parts == k) for k, name in enumerate(names)}
+    keys = ("nodes", "element_kind", "element_nodes", "element_offsets")
+    return _mesh({key: geometry[key].values for key in keys}, sets, point_data=point_data, cell_data={"part": parts})
+
+
+def of_mesh(mesh: dict[str, Any]) -> meshio.Mesh:
+    """The mesh of a case, with its regions as sets of cells and, those of points, of points."""
+    sets = {name: np.asarray(own) for name, dimension, own in mesh["regions"] if dimension > 0}
+    first, nodes = mesh["element_offsets"][:-1], mesh["element_nodes"]
+    points = {name: nodes[first[own]] for name, dimension, own in mesh["regions"] if dimension == 0}
+    return _mesh(mesh, sets, point_sets=points)
+
+
+def _mesh(
+    mesh: dict[str, Any],
+    sets: dict[str, npt.NDArray[np.int64]],
+    *,
+    point_data: dict[str, Any] | None = None,
+    point_sets: dict[str, Any] | None = None,
+    cell_data: dict[str, Any] | None = None,
+) -> meshio.Mesh:
+    """Cells but for points; sets and data are by all cells, neighbours of one kind are a block."""
     import meshio
 
-    nodes, ends = geometry["element_nodes"].values, geometry["element_offsets"].values
-    kinds, parts = geometry["element_kind"].values, geometry["element_part"].values
-    cells: list[tuple[str, Any]] = []
-    data: list[Any] = []
-    # Neighbours of one kind are a block.
-    breaks = np.flatnonzero(np.diff(kinds)) + 1
-    for first, last in zip([0, *breaks], [*breaks, len(kinds)], strict=True):
-        if first == last:
-            continue
+    nodes, ends, kinds = mesh["element_nodes"], mesh["element_offsets"], mesh["element_kind"]
+    bounds = [0, *(np.flatnonzero(np.diff(kinds)) + 1), len(kinds)]
+    blocks = [(a, b) for a, b in zip(bounds, bounds[1:], strict=False) if b > a and kinds[a] != _VTK["vertex"]]
+
+    def cells(first: int, last: int) -> tuple[str, Any]:
         rows = nodes[ends[first] : ends[last]].reshape(last - first, -1)
-        kind = _of_number(int(kinds[first]))
-        cells.append((kind, rows[:, _WEDGE] if kind == "wedge" else rows))
-        data.append(parts[first:last])
-    names = [str(name) for name in geometry["part_names"].values]
-    sets = {name: [np.flatnonzero(own == k) for own in data] for k, name in enumerate(names)}
+        kind = next(name for name, own in _VTK.items() if own == kinds[first])
+        return kind, rows[:, _WEDGE] if kind == "wedge" else rows
+
     return meshio.Mesh(
-        np.asarray(geometry["nodes"].values, dtype=float),
-        cells,
+        np.asarray(mesh["nodes"], dtype=float).reshape(-1, 3),
+        [cells(first, last) for first, last in blocks],
         point_data=point_data,
-        cell_data={"part": data},
-        cell_sets=sets,
+        point_sets=point_sets,
+        cell_data={name: [own[first:last] for first, last in blocks] for name, own in (cell_data or {}).items()},
+        cell_sets={
+            name: [own[(own >= first) & (own < last)] - first for first, last in blocks] for name, own in sets.items()
+        },
     )

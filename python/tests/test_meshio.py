@@ -94,6 +94,19 @@ def test_results_come_back_with_their_parts(tmp_path: Path) -> None:
         assert again.model().n == 3 * len(mesh.points)
 
 
+@pytest.mark.parametrize("kind", ["hexahedron", "wedge"])
+def test_the_mesh_of_a_case_comes_back_with_its_regions(kind: str, tmp_path: Path) -> None:
+    mesh = bar(kind)
+    solid = {"bar": {"material": "steel", "allow_locking": kind == "wedge"}}
+    case = stridor.Case.from_meshio(mesh, {**KEYS, "solid": solid}, tmp_path / "one")
+    back = case.to_meshio()
+    assert np.array_equal(back.points, mesh.points)
+    assert {name: sum(map(len, own)) for name, own in back.cell_sets.items()} == {"bar": len(mesh.cells[0]), "face": 1}
+    assert np.array_equal(np.sort(back.point_sets["end"]), np.arange(4))
+    again = stridor.Case.from_meshio(back, {**KEYS, "solid": solid}, tmp_path / "two")
+    assert frequencies(again) == pytest.approx(frequencies(case), rel=1e-9)
+
+
 def test_what_stridor_cannot_take_is_an_input_error(tmp_path: Path) -> None:
     mesh = meshio.Mesh(np.zeros((10, 3)), [("triangle10", [np.arange(10)])])
     with pytest.raises(stridor.InputError, match="triangle10"):
