@@ -105,15 +105,17 @@ impl Loads {
         for (factor, set) in chosen.and_then(|number| self.sums.get(&number)).map_or(&[][..], |(of, _)| of) {
             *factors.entry(*set).or_default() += factor;
         }
+        let mut faces = None;
         for number in taken(Choice::Load, "LOAD", &self.sets, &sums, model) {
             // A set that is chosen by itself stands with the factor 1; one may stand in a sum several times.
             let in_sum = factors.get(&number).copied().unwrap_or(0.0);
             let own = if chosen.is_none() || chosen == Some(number) { 1.0 } else { 0.0 };
-            let mut alike = Alike::default();
+            let mut alike = Alike { faces, ..Alike::default() };
             for (raw, place) in self.sets.get(&number).into_iter().flatten() {
                 let site = Site { set: number, factor: own + in_sum, place: *place };
                 load(raw, &site, &mut alike, model);
             }
+            faces = alike.faces;
         }
     }
 }
