@@ -1,5 +1,6 @@
 //! Frequency responses of a case.
 
+use super::frf_reach::Pieces;
 use super::frf_stability::unstable_modes;
 use super::modes::{
     check_damping_frequencies, damping_of_response, identify, labels, response_needs, without_prestress,
@@ -63,6 +64,12 @@ pub fn frfs<'a>(prepared: &Prepared<'a>) -> Result<Vec<PreparedFrf<'a>>> {
             seen.extend(found.map(|motion| (own.clone(), motion)));
         }
         let Some(force) = force else { continue };
+        let open = wanted.contact == FrfContact::Open;
+        let pieces = Pieces::new(&prepared.system, !open);
+        for (own, motion) in &seen {
+            let contacts = if open { prepared.system.pairs.len() } else { 0 };
+            faults.take(pieces.check((&force, motion), &format!("frf.{name}.response.{own}"), contacts));
+        }
         if wanted.response.is_empty() {
             seen.push(("drive_point".into(), force.clone()));
         }

@@ -30,6 +30,7 @@ mod export;
 mod folder;
 mod forces;
 mod frf;
+mod frf_reach;
 mod frf_stability;
 mod imported;
 mod known;

@@ -1,6 +1,6 @@
 //! A structure as harmonic forces see it: at full order, and by its modes with static residuals.
 
-use super::{ManyPoints, Reduced, has_many_points, reduce};
+use super::{ManyPoints, Reduced, reduce};
 use crate::equilibrium::{SteadyOptions, SteadySliding, solve_steady, tangent_stiffness};
 use crate::error::Result;
 use crate::linalg::{SparseMatrix, SparseVector};
@@ -14,6 +14,10 @@ pub const MODES: f64 = 2.0;
 
 /// Relative error of the deflections under the forces of contacts of many points.
 const CONTACT_TOLERANCE: f64 = 1e-3;
+
+/// Up to this many contact points a response has the deflections under a force at each; of more it would take dense solutions of that
+/// size at every frequency.
+const LINEAR_POINTS: usize = 32;
 
 /// Modal damping of a structure.
 pub struct DampingOfModes<'a> {
@@ -70,7 +74,7 @@ impl Receptance {
         if let Some(modal) = (damping.of)(&system.structure.mass, &real)? {
             system.structure.damping.modal = Some(modal);
         }
-        let reduced = if has_many_points(&system) {
+        let reduced = if system.points().count() > LINEAR_POINTS {
             let shapes = Mat::zeros(system.n_dofs(), 0);
             let many = ManyPoints { tolerance: CONTACT_TOLERANCE, linear: true, shapes, states: Vec::new() };
             reduce(&system, &steady, &real, forms, Some(many))?
