@@ -221,7 +221,7 @@ mod tests {
             "Did you mean `mesh.annulus.hub_radius`?",
             "the lower bound before the upper one",
             "`shell.disc.thickness` twice",
-            "below 0.5 for `material.steel.poissons_ratio`",
+            "0.6 for `material.steel.poissons_ratio`; expected a value above -1 and below 0.5",
             "a value inside the bounds",
             "only says what is asked",
             "scalars of one unit",

@@ -134,7 +134,7 @@ fn check(contact: &Contact, report: &mut Report) {
 #[derive(Debug, Clone, PartialEq)]
 pub enum ContactPoints {
     /// A table (CSV) with the columns `normal`, `t1` and, when there are any, `t2`, `weight` (1), `gap` (0) \[m\],
-    /// `x`, `y`, `z` \[m\].
+    /// `speed` (1), the sliding velocity there over that of the pair, `x`, `y`, `z` \[m\].
     File(String),
     /// Rows of `normal`, `t1` and, when there is one, `t2`.
     Rows(Vec<Vec<String>>),

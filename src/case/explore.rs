@@ -1,6 +1,6 @@
 //! `[sweep.NAME]` and `[map.NAME]`: complex eigenvalues over scalars of the rest of the case.
 
-use super::varied::no_number;
+use super::varied::{no_number, refused};
 use super::{Case, Invalidates, Parameter};
 use crate::schema::units::{dimension_of, parse_of_scalar};
 use crate::schema::{Report, declare, dotted, key};
@@ -120,14 +120,8 @@ impl Axis<'_> {
             if !sound {
                 continue;
             }
-            if let Err(error) = case.with_parameter(self.path, value) {
-                let reason = match &error {
-                    crate::error::Error::Input(faults) => {
-                        faults.0.first().map_or(String::new(), |f| f.expected.clone())
-                    }
-                    other => other.to_string(),
-                };
-                report.fault(&key(name), format!("{value} for `{}`", self.path), reason, "");
+            if let Some(expected) = refused(case, self.path, value) {
+                report.fault(&key(name), format!("{value} for `{}`", self.path), expected, "");
             }
         }
         if sound && from == to {
@@ -211,5 +205,37 @@ mod tests {
         let without = CASE.replace("[cea]\nband = [0, \"1 Hz\"]", "");
         let error = Case::parse("c", &format!("{without}\n{SWEEP}"), ".".into()).unwrap_err().to_string();
         assert!(error.contains("no [cea]"), "{error}");
+    }
+    /// A contact that slides is at rest at zero, where a study would compare two kinds of contact.
+    #[test]
+    fn no_study_takes_a_contact_from_sliding_to_rest() {
+        let sliding =
+            CASE.replace("unilateral = false", "unilateral = true").replace("approach = 0", "load = \"1 N\"");
+        let resting = sliding.replace("sliding_velocity = \"1 m/s\"", "sliding_velocity = 0");
+        let studies = |from: &str, to: &str| {
+            [
+                format!(
+                    "[sweep.v]\nparameter = \"contact.belt.sliding_velocity\"\nfrom = {from}\nto = {to}\n"
+                ),
+                format!(
+                    "[map.v]\nparameters = [\"contact.belt.friction.mu0\", \"contact.belt.sliding_velocity\"]\n\
+                     from = [0.1, {from}]\nto = [0.3, {to}]\n"
+                ),
+                format!(
+                    "[uncertainty.v.parameter.v]\npath = \"contact.belt.sliding_velocity\"\nbetween = [{from}, {to}]\n"
+                ),
+            ]
+        };
+        let error_of =
+            |text: String| Case::parse("c", &text, ".".into()).err().map(|error| error.to_string());
+        for study in studies("0", "2") {
+            let words = error_of(format!("{sliding}\n{study}")).unwrap();
+            assert!(words.contains("a velocity at which [contact.belt] slides"), "{words}");
+            let words = error_of(format!("{resting}\n{study}")).unwrap();
+            assert!(words.contains("[contact.belt] sticks, and would slide"), "{words}");
+        }
+        for study in studies("0.5", "2") {
+            assert_eq!(error_of(format!("{sliding}\n{study}")), None);
+        }
     }
 }

@@ -112,7 +112,7 @@ mod tests {
             "the name \"a b\"",
             "a b.confidence`",
             "at least one table [uncertainty.",
-            "expected a value of zero or more for `contact.belt.friction.mu0`",
+            "-0.1 for `contact.belt.friction.mu0`; expected a value of zero or more",
             "`contact.belt.friction.mu0` twice",
             "only says what is asked",
         ] {

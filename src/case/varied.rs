@@ -89,21 +89,30 @@ pub(crate) fn check_parameter(
     }
     let sound = between[0] < between[1] && !report.unread(&key("between"));
     for value in between.iter().filter(|_| sound) {
-        if let Some(expected) = path.iter().find_map(|path| refused(case, path, *value)) {
-            report.fault(&key("between"), format!("{value}"), expected, "");
+        let refused = path.iter().find_map(|path| refused(case, path, *value).map(|why| (path, why)));
+        if let Some((path, expected)) = refused {
+            report.fault(&key("between"), format!("{value} for `{path}`"), expected, "");
         }
     }
 }
 
-/// Why the case does not take `value` at `path`, if it does not.
-fn refused(case: &Case, path: &str, value: f64) -> Option<String> {
-    match case.with_parameter(path, value) {
-        Ok(_) => None,
+/// What a study of the case expects in place of `value` at `path`, if that cannot be.
+pub(super) fn refused(case: &Case, path: &str, value: f64) -> Option<String> {
+    let other = match case.with_parameter(path, value) {
+        Ok(other) => other,
         Err(Error::Input(faults)) => {
-            Some(faults.0.first().map_or(String::new(), |f| format!("{} for `{path}`", f.expected)))
+            return Some(faults.0.first().map_or(String::new(), |f| f.expected.clone()));
         }
-        Err(other) => Some(other.to_string()),
-    }
+        Err(other) => return Some(other.to_string()),
+    };
+    case.contact.iter().find(|(name, contact)| contact.rests() != other.contact[*name].rests()).map(
+        |(name, contact)| match contact.rests() {
+            true => format!(
+                "no study of this: [contact.{name}] sticks, and would slide; give it a velocity first"
+            ),
+            false => format!("a velocity at which [contact.{name}] slides: at rest it sticks"),
+        },
+    )
 }
 
 fn find<'a>(report: &mut Report, key: &str, all: &'a [Parameter], path: &str) -> Option<&'a Parameter> {

@@ -1,9 +1,11 @@
 //! Unsymmetric terms as a low-rank interface: K_c = W k Wᵀ and C_c = W c Wᵀ.
 
+use crate::connected::lowest_connected;
 use crate::equilibrium::{ContactBlock, PointState, SteadySliding, directions, linearize, linearize_points};
-use crate::linalg::sparse::entry;
+use crate::linalg::congruence::congruence;
 use crate::linalg::{SparseMatrix, SparseVector, c64};
 use crate::system::{Coupling, System};
+use faer::Mat;
 use std::collections::BTreeMap;
 
 /// The linearised contacts, and what imported matrices have beyond their symmetric part, as one low-rank interface.
@@ -116,19 +118,35 @@ impl<'a> Interface<'a> {
         self.directions.iter().map(|direction| direction.iter().map(extent).sum()).collect()
     }
 
+    /// The directions that terms connect, ascending, block by block, and those terms.
+    pub(crate) fn blocks(&self) -> Vec<(Vec<usize>, Vec<InterfaceTerm>)> {
+        let ends = self.terms.iter().map(|term| [term.row, term.column]);
+        let lowest = lowest_connected(self.directions.len(), ends);
+        let mut blocks = vec![(Vec::new(), Vec::new()); lowest.len()];
+        lowest.iter().enumerate().for_each(|(d, first)| blocks[*first].0.push(d));
+        self.terms.iter().for_each(|term| blocks[lowest[term.row]].1.push(*term));
+        blocks.retain(|(_, terms)| !terms.is_empty());
+        blocks
+    }
+
     /// W k Wᵀ and W c Wᵀ as sparse matrices (n × n).
     pub fn assembled(&self, n: usize) -> [SparseMatrix; 2] {
-        let sum = |of: fn(&InterfaceTerm) -> f64| {
-            let mut entries = Vec::new();
-            for term in self.terms.iter().filter(|term| of(term) != 0.0) {
-                for (i, a) in self.directions[term.row].iter() {
-                    let column = self.directions[term.column].iter();
-                    entries.extend(column.map(|(j, b)| entry(i, j, of(term) * a * b)));
-                }
+        let [mut stiffness, mut damping] = [(); 2].map(|()| Vec::new());
+        for (block, terms) in self.blocks() {
+            let directions: Vec<_> = block.iter().map(|d| self.directions[*d]).collect();
+            let place = |d: usize| block.binary_search(&d).expect("the ends of a term are in its block");
+            let [mut k, mut c] = [(); 2].map(|()| Mat::<f64>::zeros(block.len(), block.len()));
+            for term in &terms {
+                let at = (place(term.row), place(term.column));
+                k[at] += term.stiffness;
+                c[at] += term.damping;
             }
+            stiffness.extend(congruence(&directions, k.as_ref()));
+            damping.extend(congruence(&directions, c.as_ref()));
+        }
+        [stiffness, damping].map(|entries| {
             SparseMatrix::try_new_from_triplets(n, n, &entries).expect("directions of the system")
-        };
-        [sum(|term| term.stiffness), sum(|term| term.damping)]
+        })
     }
 
     /// Wᵀ x.

@@ -4,8 +4,8 @@ use super::imported::direction_text;
 use super::prepared::Prepared;
 use super::pressed;
 use crate::case::{
-    CalibrateAnalysis, Case, ContactPoints, ContactState, Matrices, SQUEAL, Slide, TransientAnalysis,
-    path_matches,
+    BristleChoice, CalibrateAnalysis, Case, ContactPoints, ContactState, InitialGap, Matrices, SQUEAL, Slide,
+    SlidingChoice, TransientAnalysis, path_matches,
 };
 use crate::dynamics::Interface;
 use crate::equilibrium::{solve_steady, tangent_stiffness};
@@ -15,7 +15,7 @@ use crate::linalg::SparseMatrix;
 use crate::linalg::matrix_market::to_text;
 use crate::linalg::sparse::{add_scaled, entry};
 use crate::results::{FileNames, FolderLock, write_atomically};
-use crate::system::{ConstantMatrices, ContactPair, Structure, System};
+use crate::system::{ConstantMatrices, ContactPair, FrictionAtRest, Structure, System};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::Path;
@@ -92,7 +92,7 @@ fn write_all(prepared: &Prepared, contact: ContactAs, out: &Path) -> Result<Vec<
         left_out
             .push("The geometric stiffness of the preload is not part of the exported stiffness".to_string());
     }
-    let mut exported = as_matrices(case, matrices, &points_files);
+    let mut exported = as_matrices(case, matrices, (&system.pairs, &points_files));
     if linearised {
         exported.contact.clear();
         left_out.extend(exported.transient.take().map(|_| gone("transient", "the laws of its contacts")));
@@ -154,13 +154,28 @@ fn points_files(prepared: &Prepared) -> BTreeMap<String, String> {
     prepared.system.pairs.iter().map(file).collect()
 }
 
-/// The same analyses of the matrices.
-fn as_matrices(case: &Case, matrices: Matrices, points_files: &BTreeMap<String, String>) -> Case {
+/// The same analyses of the matrices. Contact points come with their own sliding directions and speeds.
+fn as_matrices(
+    case: &Case,
+    matrices: Matrices,
+    (pairs, points_files): (&[ContactPair], &BTreeMap<String, String>),
+) -> Case {
     let mut exported = Case { matrices: Some(matrices), prestress: false, ..case.without_structure() };
-    for (name, contact) in &mut exported.contact {
-        contact.points = points_files.get(name).cloned().map(ContactPoints::File);
+    for pair in pairs {
+        let Some(contact) = exported.contact.get_mut(&pair.name) else { continue };
+        contact.points = points_files.get(&pair.name).cloned().map(ContactPoints::File);
         (contact.body, contact.counter) = (String::new(), String::new());
         (contact.into, contact.placement, contact.stroke) = (None, None, 0.0);
+        contact.initial_gap = InitialGap::Geometry;
+        if let SlidingChoice::About { .. } = contact.sliding {
+            let (sliding_velocity, sliding_direction) = (pair.sliding_velocity, [1.0, 0.0, 0.0]);
+            contact.sliding = SlidingChoice::Along { sliding_velocity, sliding_direction };
+        }
+        // Of points no default is elastic while they slide.
+        if contact.bristle.is_none() && pair.law.at_rest() == FrictionAtRest::Elastic && !pair.sticks() {
+            let (stiffness, per) = (contact.normal.stiffness, contact.normal.per);
+            contact.bristle = Some(BristleChoice { stiffness, damping: 0.0, per, slides: true });
+        }
     }
     exported
 }
@@ -269,12 +284,12 @@ fn dofs(prepared: &Prepared) -> String {
 }
 
 fn points(pair: &ContactPair) -> String {
-    let mut text = String::from("normal,t1,t2,weight,gap,x,y,z\n");
+    let mut text = String::from("normal,t1,t2,weight,gap,speed,x,y,z\n");
     for point in &*pair.points {
         let [t1, t2] = &point.tangents;
         let [x, y, z] = point.position;
         let directions = [&point.normal, t1, t2].map(direction_text).join(",");
-        let _ = writeln!(text, "{directions},{},{},{x},{y},{z}", point.weight, point.gap);
+        let _ = writeln!(text, "{directions},{},{},{},{x},{y},{z}", point.weight, point.gap, point.speed);
     }
     text
 }

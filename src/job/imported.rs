@@ -20,7 +20,7 @@ const ROW_COLUMNS: [&[&str]; 2] =
     [&["node"], &["dof", "node", "ux", "uy", "uz", "rx", "ry", "rz", "x", "y", "z"]];
 /// The same of the table of contact points.
 const POINT_COLUMNS: [&[&str]; 2] =
-    [&["normal", "t1"], &["normal", "t1", "t2", "weight", "gap", "x", "y", "z"]];
+    [&["normal", "t1"], &["normal", "t1", "t2", "weight", "gap", "speed", "x", "y", "z"]];
 
 /// A file and what the name of a matrix in it begins with.
 type MatrixPath = (PathBuf, char);
@@ -411,9 +411,14 @@ fn points_of(table: &TextTable, n: usize) -> Result<Vec<ContactPoint>> {
             faults.push(Fault::new(format!("{place} `weight`"), weight.to_string(), "a weight above zero"));
         }
         let gap = row.number("gap", 0.0, &mut faults);
+        let speed = row.number("speed", 1.0, &mut faults);
+        if speed < 0.0 {
+            let expected = "the sliding velocity there over that of the pair, zero or more";
+            faults.push(Fault::new(format!("{place} `speed`"), speed.to_string(), expected));
+        }
         let position = ["x", "y", "z"].map(|c| row.number(c, 0.0, &mut faults));
         if let Some([normal, t1, t2]) = directions(&place, cells, n, &mut faults) {
-            found.push(ContactPoint { position, gap, weight, speed: 1.0, normal, tangents: [t1, t2] });
+            found.push(ContactPoint { position, gap, weight, speed, normal, tangents: [t1, t2] });
         }
     }
     if found.is_empty() && faults.0.is_empty() {

@@ -14,6 +14,7 @@ use crate::reduction::has_many_points;
 use crate::stability::CountSize;
 use crate::structure::{Model, Part, as_plate};
 use crate::system::System;
+use std::collections::BTreeSet;
 use std::f64::consts::{PI, TAU};
 
 /// Runs of fewer degrees of freedom fit any machine, with as many modes as they can have: 14 vectors each take 0.4 GiB.
@@ -44,6 +45,9 @@ const DENSE_MATRICES: f64 = 6.0;
 const CONTACT_SHAPES: f64 = 350.0;
 /// and how many times its vectors are there while it is made.
 const REDUCED_COPIES: f64 = 5.0;
+/// Bytes of an entry between rows in which imported directions act, of the two matrices that a count has of them, as they are listed and
+/// sorted.
+const COUPLED_ENTRY: f64 = 2.0 * (24.0 + 24.0);
 /// What a sample of uncertain scalars takes in all \[bytes\],
 const SAMPLE: f64 = 460.0;
 /// and for each of its modes: counted in runs of 20 000 to 200 000 samples of 2 and 22 modes.
@@ -204,7 +208,8 @@ pub fn expected_memory(prepared: &Prepared, selection: Selection) -> Result<Opti
     let full = moves.is_some_and(|wanted| !reduced || wanted.compare_steps.map_or(!many, |steps| steps > 0));
     let full_motion = if full { run.full_motion(&prepared.system) } else { 0.0 };
     let count = complex.filter(|_| prepared.system.skew().is_none()).and_then(|cea| {
-        let directions = 3.0 * prepared.system.points().count() as f64;
+        let imported = prepared.system.coupling.as_ref().map_or(0, |rest| rest.directions.len());
+        let directions = (3 * prepared.system.points().count() + imported) as f64;
         let size = CountSize::expected(dofs, fill, symbolic.multiplications(), run.modes, directions);
         let made = cea.certify.unwrap_or_else(|| size.within_the_analysis());
         (made && directions > 0.0).then_some(size)
@@ -213,7 +218,7 @@ pub fn expected_memory(prepared: &Prepared, selection: Selection) -> Result<Opti
         + skew
         + samples
         + reduced_motion.max(full_motion)
-        + count.map_or(0.0, |size| size.bytes());
+        + count.map_or(0.0, |size| size.bytes() + COUPLED_ENTRY * coupled_rows(&prepared.system).powi(2));
     if dofs < LARGE.0 && bytes < LARGE.1 {
         return Ok(None);
     }
@@ -314,6 +319,12 @@ fn modes_below(model: &Model, hz: f64) -> f64 {
         _ => 0.0,
     };
     model.parts.iter().map(of).sum()
+}
+
+/// The rows in which imported directions act.
+fn coupled_rows(system: &System) -> f64 {
+    let directions = system.coupling.iter().flat_map(|rest| &rest.directions);
+    directions.flat_map(|d| d.indices()).collect::<BTreeSet<_>>().len() as f64
 }
 
 fn words(bytes: f64) -> String {

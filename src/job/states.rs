@@ -11,7 +11,7 @@ use super::prepared::Prepared;
 use super::studies::{SHARED, studies};
 use crate::case::{Case, CeaAnalysis, Invalidates, VariedCase};
 use crate::equilibrium::{self, PointState, SteadySolver, tangent_stiffness};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::linalg::c64;
 use crate::linalg::multivector::gram;
 use crate::modal::RealModes;
@@ -144,6 +144,15 @@ impl<'a> States<'a> {
             false => Cow::Borrowed(&system.load),
         };
         let pairs = with_laws(&system.pairs, case)?;
+        if let Some((pair, _)) = pairs.iter().zip(&system.pairs).find(|(at, own)| at.sticks() != own.sticks())
+        {
+            let found = "the velocity is zero here: at rest it sticks, at any other velocity it slides";
+            return Err(Error::analysis(
+                format!("`contact.{}`", pair.name),
+                found,
+                "Vary the velocity on one side of zero",
+            ));
+        }
         self.start.solver.points(&pairs, &load, &prepared.steady_options())
     }
 }

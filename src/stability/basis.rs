@@ -13,8 +13,10 @@ use std::sync::OnceLock;
 const PANEL: usize = 32;
 /// Of more columns than this the principal directions are taken.
 const WIDE: usize = 48;
-/// Vectors besides the real modes for which a basis has memory before it is reallocated.
+/// Vectors besides the real modes for which a basis has memory before it is copied to a larger place,
 const CAPACITY: usize = 160;
+/// and for each of the real modes where the interface has more directions than there are modes: 5.9 and 7.1 were counted.
+const OF_MANY_POINTS: usize = 7;
 
 /// A basis B = \[Φ Z\] and the projections BᵀMB, BᵀCB, BᵀKB, BᵀHB, and BᵀW of the interface.
 ///
@@ -46,7 +48,9 @@ pub(super) struct Basis<'a> {
 impl<'a> Basis<'a> {
     /// Starts from M-orthonormal real modes.
     pub(super) fn new(operator: &'a Operator<'a>, modes: MatRef<'a, f64>, tau: f64) -> Self {
-        let mut added = Mat::with_capacity(operator.n(), CAPACITY);
+        let many = operator.interface.directions.len() > modes.ncols();
+        let capacity = if many { OF_MANY_POINTS * modes.ncols() } else { 0 };
+        let mut added = Mat::with_capacity(operator.n(), capacity.max(CAPACITY).min(operator.n()));
         added.resize_with(operator.n(), 0, |_, _| 0.0);
         let mut basis = Basis {
             operator,

@@ -25,6 +25,7 @@
 struct Readme;
 
 pub mod assignment;
+pub mod congruence;
 pub mod dense;
 pub mod eigenpairs;
 pub mod extended;

@@ -14,9 +14,10 @@
 //! Both are inertia counts. With the matrices of the structure any R beyond the largest growth rate will do that is large enough
 //! by the norms of the rest in coordinates of unit mass; multiples of the band's top are tried.
 
-use crate::dynamics::{InterfaceTerm, Operator};
+use crate::dynamics::Operator;
 use crate::error::Result;
 use crate::linalg::SparseMatrix;
+use crate::linalg::congruence::congruence;
 use crate::linalg::dense::{product, symmetric_eigen};
 use crate::linalg::factor::SymmetricFactor;
 use crate::linalg::factor::inertia_like;
@@ -208,7 +209,7 @@ impl InterfaceBounds {
         let interface = &operator.interface;
         let scale: Vec<f64> = interface.sizes(top).iter().map(|s| s.sqrt()).collect();
         let (mut stiffness, mut falling) = (Vec::new(), Vec::new());
-        for (block, terms) in blocks(operator) {
+        for (block, terms) in interface.blocks() {
             let r = block.len();
             let place = |d: usize| block.binary_search(&d).expect("the ends of a term are in its block");
             let (mut k, mut c) = (Mat::<f64>::zeros(r, r), Mat::<f64>::zeros(r, r));
@@ -225,18 +226,14 @@ impl InterfaceBounds {
             let noise = NOISE * c_s.norm_max();
             let negative = function(c_s.as_ref(), |v| if v < -noise { -v } else { 0.0 })?;
             let worst = if oscillating { k_s - skew } else { k_s };
+            let directions: Vec<_> = block.iter().map(|d| interface.directions[*d]).collect();
             for (small, triplets) in [(&worst, &mut stiffness), (&negative, &mut falling)] {
                 let noise = NOISE * small.norm_max();
-                for (i, j) in (0..r).flat_map(|i| (0..r).map(move |j| (i, j))) {
-                    if small[(i, j)].abs() <= noise {
-                        continue;
-                    }
-                    let value = small[(i, j)] * scale[block[i]] * scale[block[j]];
-                    let [to, from] = [i, j].map(|i| interface.directions[block[i]]);
-                    for (p, x) in to.iter() {
-                        triplets.extend(from.iter().map(|(q, y)| entry(p, q, value * (x * y))));
-                    }
-                }
+                let large = Mat::from_fn(r, r, |i, j| match small[(i, j)] {
+                    value if value.abs() > noise => value * scale[block[i]] * scale[block[j]],
+                    _ => 0.0,
+                });
+                triplets.extend(congruence(&directions, large.as_ref()));
             }
         }
         let n = operator.n();
@@ -246,32 +243,6 @@ impl InterfaceBounds {
         };
         Ok(InterfaceBounds { stiffness: matrix(stiffness), falling: matrix(falling) })
     }
-}
-
-/// The directions that the terms of the interface connect, ascending, block by block, and those terms.
-fn blocks(operator: &Operator<'_>) -> Vec<(Vec<usize>, Vec<InterfaceTerm>)> {
-    let terms = &operator.interface.terms;
-    let mut leader: Vec<usize> = (0..operator.interface.directions.len()).collect();
-    fn first(leader: &mut [usize], mut d: usize) -> usize {
-        while leader[d] != d {
-            leader[d] = leader[leader[d]];
-            d = leader[d];
-        }
-        d
-    }
-    for term in terms {
-        let (a, b) = (first(&mut leader, term.row), first(&mut leader, term.column));
-        leader[a.max(b)] = a.min(b);
-    }
-    let mut blocks = vec![(Vec::new(), Vec::new()); leader.len()];
-    for d in 0..leader.len() {
-        blocks[first(&mut leader, d)].0.push(d);
-    }
-    for term in terms {
-        blocks[first(&mut leader, term.row)].1.push(*term);
-    }
-    blocks.retain(|(_, terms)| !terms.is_empty());
-    blocks
 }
 
 /// f of a symmetric matrix.
