@@ -90,6 +90,12 @@ fn check(contact: &Contact, report: &mut Report) {
             "another region than the `body`: a body is in contact with another one, or with the \"ground\"";
         report.fault("counter", format!("\"{}\", the body itself", contact.counter), expected, "");
     }
+    let pressure = contact.normal.per.pressure();
+    for (_, text) in report.given("friction.pressure") {
+        if let Err(found) = parse_of_scalar(&text, pressure) {
+            report.fault("friction.pressure", found, pressure.name, "");
+        }
+    }
     let ground = contact.counter == "ground";
     if ground && contact.into.is_none() {
         let expected = "the direction in which the body moves into the ground, such as [0, 0, -1]";
@@ -330,6 +336,18 @@ choices! {
 }
 
 impl StiffnessPer {
+    /// The dimension of a normal force.
+    fn pressure(self) -> Dimension {
+        let (power, symbol, example) = match self {
+            StiffnessPer::Point => (0, "N", "a force such as \"20 N\", as `normal.per` is \"point\""),
+            StiffnessPer::Length => {
+                (1, "N/m", "a force per length such as \"2 kN/m\", as `normal.per` is \"length\"")
+            }
+            StiffnessPer::Area => (2, "Pa", "a pressure such as \"1 MPa\", as `normal.per` is \"area\""),
+        };
+        FORCE.per_metre(power, symbol, example)
+    }
+
     /// The dimensions of stiffness, cubic stiffness and damping.
     fn dimensions(self) -> [Dimension; 3] {
         let (power, [plain, cubic, dashpot], example) = match self {

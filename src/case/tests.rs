@@ -188,6 +188,42 @@ fn a_contact_at_rest_sticks() {
     }
 }
 
+/// The pressures of a table of friction are forces per what the stiffness belongs to.
+#[test]
+fn pressures_of_a_friction_table_have_the_unit_of_the_normal_law() {
+    let of = |per: &str, stiffness: &str, units: [&str; 2]| {
+        let normal = "normal = { per = \"length\", stiffness = \"10 GN/m^2\", cubic = 1e18 }";
+        let law = "friction = { law = \"exponential\", mu0 = 0.3, mu1 = 0.1, alpha = \"5 s/m\" }";
+        let table = format!(
+            "friction = {{ law = \"table\", velocity = [0, 1], mu = [[0.4, 0.3], [0.3, 0.2], [0.2, 0.1]], \
+             pressure = [0, \"1 {}\", \"2 {}\"] }}",
+            units[0], units[1]
+        );
+        let normal_of = format!("normal = {{ per = \"{per}\", stiffness = \"10 GN/{stiffness}\" }}");
+        assert!(RIG.contains(normal) && RIG.contains(law));
+        parse(&RIG.replace(normal, &normal_of).replace(law, &table))
+    };
+    let kinds = [
+        ("area", "m^3", [("Pa", 1.0), ("MPa", 1e6), ("N/mm^2", 1e6)]),
+        ("length", "m^2", [("N/m", 1.0), ("kN/m", 1e3), ("N/mm", 1e3)]),
+        ("point", "m", [("N", 1.0), ("kN", 1e3), ("MN", 1e6)]),
+    ];
+    for (per, stiffness, own) in kinds {
+        for (unit, factor) in own {
+            let case = of(per, stiffness, [unit, unit]).unwrap();
+            let FrictionCurve::Table { pressure, .. } = &case.contact["rim"].friction.law else { panic!() };
+            assert_eq!(pressure[..], [0.0, factor, 2.0 * factor], "{unit}");
+            assert_eq!(parse(&case.to_toml()).unwrap(), case);
+        }
+        for (other, _, units) in kinds.iter().filter(|(other, ..)| *other != per) {
+            let error = of(per, stiffness, [own[0].0, units[0].0]).unwrap_err().to_string();
+            let named = error.contains("`contact.rim.friction.pressure`: found \"2 ");
+            let expected = format!("as `normal.per` is \"{per}\"");
+            assert!(named && error.contains(&expected) && !error.contains("faults"), "{other}: {error}");
+        }
+    }
+}
+
 #[test]
 fn every_fault_is_found_at_once_with_its_line() {
     let text = RIG

@@ -35,8 +35,8 @@ variants! {
         Table "table" {
             /// Slip velocities \[m/s\], ascending.
             velocity: Vec<f64> = ascending(key::quantity_list(VELOCITY), "a list of velocities"),
-            /// Pressures (N per length, area or point), ascending; one entry when μ does not depend on it.
-            pressure: Vec<f64> = ascending(key::quantity_list(NUMBER), "a list of pressures").or(vec![0.0]),
+            /// Pressures, ascending, in N per area, length or point as `normal.per` has it; one entry when μ does not depend on it.
+            pressure: Vec<f64> = ascending(key::quantity_list_of_scalar(), "a list of pressures").or(vec![0.0]),
             /// One row a pressure, one column a velocity.
             mu: Vec<Vec<f64>> = key::rows(NUMBER).expecting("rows of friction coefficients"),
         }

@@ -86,6 +86,11 @@ pub fn quantity_list(dimension: Dimension) -> Field<Vec<f64>> {
     field(format!("a list, each {}", dimension.name), Units::one(dimension))
 }
 
+/// A list of quantities in the unit of another scalar, which is checked where that scalar is known.
+pub fn quantity_list_of_scalar() -> Field<Vec<f64>> {
+    field("a list of values in the unit of another scalar", Units::any())
+}
+
 /// A list of lists of two quantities, each with its own dimension.
 pub fn pairs(dimensions: [Dimension; 2]) -> Field<Vec<[f64; 2]>> {
     field("a list of lists of two values", Units::each(&dimensions))
