@@ -8,11 +8,13 @@ use super::studies::Study;
 use crate::case::{Case, MapAnalysis, SweepAnalysis};
 use crate::error::{Error, Result};
 use crate::linalg::c64;
+use crate::numbers::given;
 use crate::progress::Observer;
 use crate::results::{DampingRow, DampingVerdicts, MapResult, RunResults, SweepMethod, SweepResult};
 use crate::stability::{Family, FamilyFrame, SlidingState};
 use crate::sweep::{
     self, Answered, Axis, Boundary, Checked, CriticalKind, MapPoint, MeasuredProblem, SweepProblem,
+    Unanswered, reasoned,
 };
 
 /// The largest |Δλ|/|λ| at full order that is accepted.
@@ -114,13 +116,14 @@ impl Explorer<'_> {
         let case = self.whole_case();
         for (name, analysis) in &case.sweep {
             record(ResultStage::StudyBegins)?;
-            let result = self.sweep(name, analysis)?;
+            let (result, warning) = self.sweep(name, analysis)?;
+            results.warnings.extend(warning);
             record(ResultStage::Found(&result))?;
             results.records.push(result);
         }
         for (name, analysis) in &case.map {
-            let (result, failure) = self.map(name, analysis, record)?;
-            results.warnings.extend(failure);
+            let (result, warning) = self.map(name, analysis, record)?;
+            results.warnings.extend(warning);
             results.records.push(result);
         }
         if let Some(verdicts) = self.damping()? {
@@ -136,14 +139,16 @@ impl Explorer<'_> {
         Ok(each.iter().all(|keeps| *keeps))
     }
 
-    /// A family trained on the states of the scalars at `paths` at `places`; those without an answer are left out.
+    /// A family trained on the states of the scalars at `paths` at `places`; those without an answer are left out, and where all are, the case
+    /// itself is taken.
     fn family(&self, paths: &[String], places: &[Vec<f64>]) -> Result<OnFamily<'_>> {
         let states = States::new(self.start, paths)?;
         self.observer.begin("reduced model", Some(places.len() as u64));
-        let members: Vec<SlidingState> = places.iter().filter_map(|at| states.at(at).ok()).collect();
+        let mut members: Vec<SlidingState> = places.iter().filter_map(|at| states.at(at).ok()).collect();
         if members.is_empty() {
-            // Says what is wrong.
-            states.at(&places[0])?;
+            let own: Result<Vec<f64>> =
+                paths.iter().map(|path| Ok(self.case.parameter(path)?.value)).collect();
+            members.push(states.at(&own?)?);
         }
         let mut family = Family::new(&self.frame, &members)?;
         for member in &members {
@@ -195,23 +200,57 @@ impl Explorer<'_> {
         }
     }
 
-    fn sweep(&self, name: &str, analysis: &SweepAnalysis) -> Result<SweepResult> {
+    /// The points of `total` without an answer, whose values of the scalars are those `at` their numbers, for a warning.
+    ///
+    /// # Errors
+    /// No point has an answer.
+    pub(super) fn without_an_answer(
+        &self,
+        study: &Study,
+        total: usize,
+        unanswered: &Unanswered,
+        at: impl Fn(usize) -> Vec<f64>,
+    ) -> Result<Option<String>> {
+        let Some((first, why)) = unanswered.first() else { return Ok(None) };
+        let value = |(path, value): (&String, f64)| {
+            let unit = self.case.parameter(path)?.unit;
+            Ok(format!("`{path}` = {} {unit}", given(value)).trim_end().to_string())
+        };
+        let place = study.paths.iter().zip(at(*first)).map(value).collect::<Result<Vec<_>>>()?.join(", ");
+        let name = &study.name;
+        if unanswered.len() < total {
+            let count = unanswered.len();
+            let begin = format!("`{name}` leaves out {count} of {total} points without an answer; the first");
+            return Ok(Some(format!("{begin}, {place}: {why}")));
+        }
+        let Error::Analysis { what, found, help } = why.clone().while_computing() else {
+            return Err(why.clone());
+        };
+        let what = format!("`{name}`: none of {total} points has an answer; the first, {place}: {what}");
+        Err(Error::analysis(what, found, help))
+    }
+
+    fn sweep(&self, name: &str, analysis: &SweepAnalysis) -> Result<(SweepResult, Option<String>)> {
         let study = Study::of_sweep(name, analysis);
         let axis = study.axes()[0];
         let parameter = self.case.parameter(&analysis.parameter)?;
         let ((sweep, measured), method) = self.refined(&study, |answered, problem, _| {
             let sweep = sweep::sweep(answered, &axis, problem.tolerance(study.axes()), self.observer)?;
-            let sample = match problem {
-                Problem::Whole(_) => vec![axis.to],
-                Problem::Reduced(_) => {
-                    [0.25, 0.75].map(|share| axis.between(axis.from, axis.to, share)).to_vec()
+            let ends = sweep.answered().next().zip(sweep.answered().next_back());
+            let sample = match (ends, problem) {
+                (None, _) => Vec::new(),
+                (Some((_, to)), Problem::Whole(_)) => vec![to],
+                (Some((from, to)), Problem::Reduced(_)) => {
+                    [0.25, 0.75].map(|share| axis.between(from, to, share)).to_vec()
                 }
             };
             let measured = measure(problem.of(), &sweep, &sample)?;
             let poor = measured.poor(&sweep).into_iter().map(|value| vec![value]).collect();
             Ok(((sweep, measured), poor))
         })?;
-        Ok(SweepResult {
+        let at = |k: usize| vec![sweep.values[k]];
+        let warning = self.without_an_answer(&study, sweep.values.len(), &sweep.unanswered, at)?;
+        let result = SweepResult {
             name: name.to_string(),
             parameter: parameter.path,
             label: parameter.label,
@@ -222,7 +261,8 @@ impl Explorer<'_> {
             verified: measured.critical,
             sample: measured.sample,
             method,
-        })
+        };
+        Ok((result, warning))
     }
 
     /// A map without points.
@@ -276,14 +316,14 @@ impl Explorer<'_> {
         let mut result = self.empty_map(name, analysis, &study)?;
         let axes = result.axes;
         let inside: Vec<[f64; 2]> = study.inside().iter().map(|at| [at[0], at[1]]).collect();
-        let (failure, method) = self.refined(&study, |answered, problem, trained| {
+        let (unanswered, method) = self.refined(&study, |answered, problem, trained| {
             let trained: Vec<[f64; 2]> = trained.iter().map(|at| [at[0], at[1]]).collect();
             result.points.clear();
             record(ResultStage::MapBegins(&result, &trained))?;
             let mut keep = |first: usize, points: &[MapPoint]| {
                 record(ResultStage::MapPoints(&result.name, first, points))
             };
-            let (points, failure) = sweep::map(answered, &axes, &mut keep, self.observer)?;
+            let (points, unanswered) = sweep::map(answered, &axes, &mut keep, self.observer)?;
             result.points = points;
             let tolerance = problem.tolerance(&axes);
             result.boundary = sweep::boundary(answered, &axes, &result.points, tolerance, self.observer)?;
@@ -293,13 +333,13 @@ impl Explorer<'_> {
                     self.check_map(on, &mut result, &inside).iter().map(|at| at.to_vec()).collect()
                 }
             };
-            Ok((failure, poor))
+            Ok((unanswered, poor))
         })?;
         result.method = method;
+        let at = |k: usize| study.place(k);
+        let warning = self.without_an_answer(&study, result.points.len(), &unanswered, at)?;
         record(ResultStage::Map(&result))?;
-        let failure =
-            failure.map(|f| format!("Map `{name}`: points without an answer are left blank; the first: {f}"));
-        Ok((result, failure))
+        Ok((result, warning))
     }
 
     /// ζ from half to twice its value.
@@ -313,6 +353,9 @@ impl Explorer<'_> {
         let on = self.family(&[RATIO.to_string()], &[vec![range[0]], vec![range[1]]])?;
         let own = on.modes(&[ratio])?;
         let sweep = sweep::sweep(&on, &axis, LOCATED[0], self.observer)?;
+        if let Some((_, why)) = sweep.unanswered.into_iter().next() {
+            return Err(why);
+        }
         let middle = (0..sweep.values.len())
             .min_by(|a, b| (sweep.values[*a] - ratio).abs().total_cmp(&(sweep.values[*b] - ratio).abs()));
         let row = |z: &c64| {
@@ -348,17 +391,17 @@ impl FullOrderErrors {
     }
 }
 
-/// Measures every critical mode and all modes at the `sample` values.
+/// Measures every critical mode and all modes at the `sample` values; a value without an answer has nothing to measure.
 fn measure(problem: &dyn MeasuredProblem, sweep: &sweep::Sweep, sample: &[f64]) -> Result<FullOrderErrors> {
-    let critical =
-        |c: &sweep::Critical| -> Result<Option<Checked>> { problem.check_nearest(&[c.value], c.eigenvalue) };
-    let worst = |value: &f64| -> Result<(f64, f64)> {
-        let checks = problem.check(&[*value])?;
-        Ok((*value, worst_alone(&checks)))
+    let critical = |c: &sweep::Critical| -> Result<Option<Checked>> {
+        Ok(reasoned(problem.check_nearest(&[c.value], c.eigenvalue))?.ok().flatten())
+    };
+    let worst = |value: &f64| -> Result<Option<(f64, f64)>> {
+        Ok(reasoned(problem.check(&[*value]))?.ok().map(|checks| (*value, worst_alone(&checks))))
     };
     Ok(FullOrderErrors {
         critical: sweep.critical.iter().map(critical).collect::<Result<_>>()?,
-        sample: sample.iter().map(worst).collect::<Result<_>>()?,
+        sample: sample.iter().filter_map(|value| worst(value).transpose()).collect::<Result<_>>()?,
     })
 }
 

@@ -20,10 +20,8 @@ impl Explorer<'_> {
     /// Every study of uncertain scalars of the case.
     pub(super) fn uncertainty(&self, results: &mut RunResults, record: &mut RecordStage) -> Result<()> {
         for (name, analysis) in &self.whole_case().uncertainty {
-            let (result, failure) = self.study(name, analysis, record)?;
-            results.warnings.extend(
-                failure.map(|f| format!("Uncertainty `{name}`: samples without an answer; the first: {f}")),
-            );
+            let (result, warning) = self.study(name, analysis, record)?;
+            results.warnings.extend(warning);
             record(ResultStage::Found(&result))?;
             results.records.push(result);
         }
@@ -40,7 +38,8 @@ impl Explorer<'_> {
         let Points::Samples { places, .. } = &study.points else { unreachable!("samples") };
         let on = self.solver(&study)?;
         record(ResultStage::StudyBegins)?;
-        let (modes, failure) = on.sampled(places, &self.known.of(&study.name, 0), self.observer)?;
+        let (modes, unanswered) = on.sampled(places, &self.known.of(&study.name, 0), self.observer)?;
+        let warning = self.without_an_answer(&study, places.len(), &unanswered, |k| places[k].clone())?;
         let study = UncertaintyStudy {
             name: name.to_string(),
             scalars: self.scalars(analysis)?,
@@ -54,7 +53,7 @@ impl Explorer<'_> {
             method: on.problem.method(),
         };
         let measured = self.measured(&on.problem, &study, places);
-        Ok((UncertaintyResult::new(study, measured), failure))
+        Ok((UncertaintyResult::new(study, measured), warning))
     }
 
     /// A reduced model is measured at some of the samples and trained on those where it is not good enough, before it serves all of

@@ -14,6 +14,8 @@ pub(super) const SECOND: &str = "#009e73";
 pub(super) const INK: &str = "#1b1f24";
 /// Secondary text.
 pub(super) const MUTED: &str = "#5b6570";
+/// Points of a sweep or map without an answer.
+pub(super) const NO_ANSWER: &str = "#c3c8ce";
 
 /// Fill and outline of the parts, in turn: light fills, so that marks on them can be read.
 pub(super) const PARTS: [[&str; 2]; 6] = [

@@ -34,7 +34,9 @@ fn point_columns() -> Vec<Column<MapPoint>> {
     vec![
         column("growth_rate", "1/s", "the largest σ of all modes in the band", |p: &MapPoint| p.growth_rate),
         column("frequency_hz", "Hz", "ω/2π of that mode", |p: &MapPoint| p.frequency_hz),
-        column("unstable", "1", "how many modes grow", |p: &MapPoint| p.unstable),
+        column("unstable", "1", "how many modes grow", |p: &MapPoint| {
+            p.growth_rate.is_finite().then_some(p.unstable as usize)
+        }),
     ]
 }
 

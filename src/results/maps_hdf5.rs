@@ -68,7 +68,9 @@ mod tests {
     fn a_map_that_is_written_as_it_comes_is_that_which_is_written_whole() {
         let dir = tempfile::tempdir().unwrap();
         let results = sample::rig();
-        let map = results.all::<MapResult>()[0];
+        let mut map = results.all::<MapResult>()[0].clone();
+        map.points[4] = MapPoint::NONE;
+        let map = &map;
         let mut file = ResultsFile::create(dir.path()).unwrap();
         let begun = MapResult { points: Vec::new(), ..map.clone() };
         for known in [&map.points[..5], &map.points[..2]] {
@@ -81,14 +83,15 @@ mod tests {
         let after = file.read(|root| Ok(datasets(&of(root, &map.name)?))).unwrap();
         assert!(before == after && before.len() > 10, "{after:?}");
         file.finish_map(map).unwrap();
-        let (mut streamed, numbers) = file
+        let (mut streamed, numbers, unstable) = file
             .read(|root| {
                 let grid = of(root, &map.name)?.group("grid")?;
                 assert_eq!(of(root, &map.name)?.attr("points_done")?.read_scalar::<u64>()?, 12);
                 let numbers = ["contact.rim.friction.mu0", "growth_rate", "frequency_hz"]
                     .map(|name| grid.dataset(name));
                 let numbers = numbers.map(|dataset| dataset.unwrap().read_raw::<f64>().unwrap());
-                Ok((datasets(&of(root, &map.name)?), numbers))
+                let unstable = grid.dataset("unstable")?.read_raw::<i64>()?;
+                Ok((datasets(&of(root, &map.name)?), numbers, unstable))
             })
             .unwrap();
         drop(file);
@@ -98,6 +101,9 @@ mod tests {
         streamed.retain(|(name, ..)| !name.contains("trained"));
         assert_eq!(streamed, whole);
         assert_eq!(numbers[0][..5], [0, 1, 2, 3, 0].map(|k| map.axes[0].value(k)));
+        let counted =
+            |point: &MapPoint| if point.growth_rate.is_nan() { -1 } else { i64::from(point.unstable) };
+        assert!(unstable.iter().copied().eq(map.points.iter().map(counted)) && unstable[4] == -1);
         for (number, of) in
             [(&numbers[1], |p: &MapPoint| p.growth_rate), (&numbers[2], |p: &MapPoint| p.frequency_hz)]
                 as [(_, fn(&MapPoint) -> f64); 2]

@@ -200,6 +200,7 @@ impl SweepResult {
             .with(self.value("to", "last value", self.axis.to))
             .with(self.value("nominal", "the value of the case", self.nominal))
             .value("values", "1", "number of values", sweep.values.len())
+            .value("answered", "1", "values with an answer", sweep.answered().count())
             .group(self.method.group())
             .table(Table::of("branches", "branch", &branch_columns(unit), &branches))
             .table(critical.field(eigenvalues))

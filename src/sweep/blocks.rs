@@ -5,9 +5,10 @@ use super::answers::{answer, points};
 use super::at_once::solve_all;
 use super::boundary::boundary;
 use super::map::MapPoint;
+use super::points::reasoned;
 use super::track::follow_block;
 use super::{Axis, SweepProblem};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::progress::Observer;
 
 /// The first and the last point of a block along each axis. Neighbouring blocks share the points between them.
@@ -60,7 +61,7 @@ impl Block {
     /// `tolerance`. Places without an answer are passed over; what is left out is what a sweep looks for at the first point.
     ///
     /// # Errors
-    /// [`Error::Io`] at a place, or of the store of `problem`; the first error of a sweep or of a boundary.
+    /// [`Error::Io`](crate::error::Error::Io) at a place, or of the store of `problem`; the first error between the points.
     pub fn solve(
         &self,
         problem: &dyn SweepProblem,
@@ -73,10 +74,7 @@ impl Block {
         let solve = |k: usize| {
             let found = answer(problem, axes, own[k]);
             observer.advance(1);
-            match found {
-                Err(error @ Error::Io { .. }) => Err(error),
-                found => Ok((own[k], found.ok())),
-            }
+            Ok((own[k], reasoned(found)?.ok()))
         };
         let found = solve_all(problem.at_once(), 0..own.len(), &solve)?;
         observer.end();

@@ -2,6 +2,7 @@
 
 use super::at_once::solve_all;
 use super::map::MapPoint;
+use super::points::reasoned;
 use super::root::{Bracket, narrow};
 use super::rounding::rounding;
 use super::{Axis, SweepProblem};
@@ -26,7 +27,7 @@ type GridEdge = (usize, usize, bool);
 /// joins the points through the cells. Where all four edges of a cell are cut, the middle of the cell decides.
 ///
 /// # Errors
-/// A place near the boundary without an answer.
+/// [`Error::Io`](crate::error::Error::Io) at a place. Any other error of a place leaves the boundary there as exact as it is by then.
 pub fn boundary(
     problem: &dyn SweepProblem,
     axes: &[Axis; 2],
@@ -83,9 +84,9 @@ impl Grid<'_> {
         edges
     }
 
-    /// The largest growth rate at a place \[1/s\], less round-off.
+    /// The largest growth rate at a place \[1/s\], less round-off; not a number where it has no answer.
     fn growth(&self, at: &[f64]) -> Result<f64> {
-        let all = self.problem.eigenvalues(at)?;
+        let Ok(all) = reasoned(self.problem.eigenvalues(at))? else { return Ok(f64::NAN) };
         let growth = (0..all.len()).map(|k| all[k].re - rounding(&all, &Mat::new(), k));
         Ok(growth.fold(f64::NEG_INFINITY, f64::max).max(-1e300))
     }

@@ -1,8 +1,10 @@
 //! A mode along one parameter.
 
 use super::Modes;
+use crate::error::{Error, Result};
 use crate::linalg::c64;
 use crate::stability::unstable;
+use faer::Mat;
 
 /// One mode followed along the parameter.
 #[derive(Debug, Clone)]
@@ -36,8 +38,20 @@ impl Branch {
     }
 }
 
-/// The modes at one value.
+/// The modes at one value; none where it has no answer.
 pub(super) struct Sample {
     pub(super) value: f64,
     pub(super) modes: Modes,
+    /// Why it has no answer.
+    pub(super) why_none: Option<Error>,
+}
+
+impl Sample {
+    pub(super) fn new(value: f64, answer: Result<Modes>) -> Self {
+        let none = Modes { eigenvalues: Vec::new(), vectors: Mat::new() };
+        match answer {
+            Ok(modes) => Sample { value, modes, why_none: None },
+            Err(why) => Sample { value, modes: none, why_none: Some(why) },
+        }
+    }
 }

@@ -173,14 +173,15 @@ fn growing(growth: &[Option<(c64, f64)>]) -> Vec<bool> {
     grows
 }
 
-/// Whether λ of one sample, given with its rounding, grows without oscillation, as more modes do than at the sample `without` it.
+/// Whether λ of one sample, given with its rounding, grows without oscillation, as more modes do than at the sample `without` it, if that
+/// has an answer.
 fn begins_to_diverge((z, rounding): (c64, f64), without: &Sample, with: &Sample) -> bool {
     let grows = |z: c64, rounding: f64| unstable(z) && z.re > rounding && is_real(z);
     let count = |Sample { modes, .. }: &Sample| {
         let all = modes.eigenvalues.iter().enumerate();
         all.filter(|(k, z)| grows(**z, modes.rounding(*k))).count()
     };
-    grows(z, rounding) && count(with) > count(without)
+    without.why_none.is_none() && grows(z, rounding) && count(with) > count(without)
 }
 
 /// Narrows the bracket between two neighbouring samples, with so many solutions at most. The mode is followed from its unstable end:

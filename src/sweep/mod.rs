@@ -37,7 +37,7 @@ pub use branch::Branch;
 pub use critical::{Critical, CriticalKind};
 pub use interaction::{Interaction, InteractionKind};
 pub use map::{MapPoint, map};
-pub use points::{Filled, RecordPoints};
+pub use points::{Filled, RecordPoints, Unanswered, reasoned};
 pub use sampled::{Paired, SampleModes, sampled};
 pub use track::{Sweep, sweep};
 

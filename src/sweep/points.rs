@@ -8,11 +8,25 @@ use crate::progress::Observer;
 /// Points that are recorded together.
 const PIECE: usize = 32;
 
-/// Points, and why points have no answer, if any has none.
-pub type Filled<P> = (Vec<P>, Option<String>);
+/// The numbers of places without an answer, ascending, and why they have none.
+pub type Unanswered = Vec<(usize, Error)>;
+
+/// Points, and those without an answer.
+pub type Filled<P> = (Vec<P>, Unanswered);
 
 /// Takes a piece of the points with the index of the first.
 pub type RecordPoints<'a, P> = dyn FnMut(usize, &[P]) -> Result<()> + 'a;
+
+/// An answer, or why there is none.
+///
+/// # Errors
+/// [`Error::Io`]: the machine refused, which says nothing of the place.
+pub fn reasoned<T>(answer: Result<T>) -> Result<Result<T>> {
+    match answer {
+        Err(refused @ Error::Io { .. }) => Err(refused),
+        answer => Ok(answer),
+    }
+}
 
 /// Points 0 to `total`; a point without an answer is `none`.
 ///
@@ -25,7 +39,7 @@ pub(super) fn fill<P: Clone + Send>(
     record: &mut RecordPoints<P>,
     observer: &dyn Observer,
 ) -> Result<Filled<P>> {
-    let (mut points, mut failure) = (Vec::new(), None);
+    let (mut points, mut unanswered) = (Vec::new(), Vec::new());
     let solve = |k: usize| {
         let point = solve(k);
         observer.advance(1);
@@ -40,18 +54,15 @@ pub(super) fn fill<P: Clone + Send>(
     while points.len() < total {
         let first = points.len();
         for point in solve_all(at_once, first..total.min(first + chunk), &solve)? {
-            points.push(match point {
-                Err(refused @ Error::Io { .. }) => return Err(refused),
-                Err(error) => {
-                    failure.get_or_insert_with(|| error.to_string());
-                    none.clone()
-                }
-                Ok(point) => point,
+            let point = reasoned(point)?.unwrap_or_else(|why| {
+                unanswered.push((points.len(), why));
+                none.clone()
             });
+            points.push(point);
         }
         for (k, piece) in points[first..].chunks(PIECE).enumerate() {
             record(first + k * PIECE, piece)?;
         }
     }
-    Ok((points, failure))
+    Ok((points, unanswered))
 }

@@ -107,8 +107,9 @@ mod tests {
     fn samples_without_an_answer_are_counted_and_the_first_failure_is_named() {
         let places: Vec<Vec<f64>> = (0..100).map(|k| vec![0.1 * f64::from(k)]).collect();
         let crossing = Crossing(AtomicUsize::new(0));
-        let (all, failure) = sampled(&crossing, &places, &()).unwrap();
-        assert!(failure.unwrap().contains("above nine") && crossing.0.into_inner() == 100);
+        let (all, unanswered) = sampled(&crossing, &places, &()).unwrap();
+        assert!(unanswered[0].1.to_string().contains("above nine") && crossing.0.into_inner() == 100);
+        assert_eq!(unanswered.iter().map(|(k, _)| *k).collect::<Vec<_>>(), (91..100).collect::<Vec<_>>());
         assert_eq!(all.iter().filter(|modes| modes.is_none()).count(), 9);
     }
 }

@@ -173,8 +173,8 @@ fn branches_pass_through_a_crossing_and_turn_away_at_an_avoided_one() {
 fn the_boundary_of_a_map_lies_on_the_closed_form() {
     let problem = Members { system: |p: &[f64]| two_dof(0.5, p[1], p[0]), band: [0.0, 1.0] };
     let axes = [axis(0.2, 0.8, 9), axis(0.8, 3.0, 8)];
-    let (points, failure) = map(&problem, &axes, &mut |_, _| Ok(()), &()).unwrap();
-    assert!(failure.is_none() && points.len() == 72);
+    let (points, unanswered) = map(&problem, &axes, &mut |_, _| Ok(()), &()).unwrap();
+    assert!(unanswered.is_empty() && points.len() == 72);
     let closed = |mu: f64, k_n: f64| ((1.5 - k_n) / 2.0).powi(2) + 0.5 * (0.5 - mu * k_n);
     for (k, p) in points.iter().enumerate() {
         let (mu, k_n) = (axes[0].value(k % 9), axes[1].value(k / 9));
@@ -226,7 +226,7 @@ fn a_resumed_map_and_another_number_of_threads_give_the_same_bits() {
 }
 
 #[test]
-fn a_place_without_an_answer_leaves_a_hole_in_the_map_and_ends_a_sweep() {
+fn a_place_without_an_answer_leaves_a_gap_in_a_map_and_in_a_sweep() {
     let problem = Members {
         system: |p: &[f64]| {
             let mut system = two_dof(0.5, 1.0, 0.4);
@@ -236,10 +236,86 @@ fn a_place_without_an_answer_leaves_a_hole_in_the_map_and_ends_a_sweep() {
         band: [0.0, 1.0],
     };
     let axes = [axis(-1.0, 1.0, 3), axis(0.0, 1.0, 2)];
-    let (points, failure) = map(&problem, &axes, &mut |_, _| Ok(()), &()).unwrap();
-    assert!(failure.unwrap().contains("velocity"));
+    let (points, unanswered) = map(&problem, &axes, &mut |_, _| Ok(()), &()).unwrap();
+    assert!(
+        unanswered.len() == 2 && unanswered[0].0 == 1 && unanswered[0].1.to_string().contains("velocity")
+    );
     assert!(points[1].growth_rate.is_nan() && points[0].growth_rate.is_finite());
-    assert!(sweep(&problem, &axes[0], 1e-6, &()).is_err());
+    let found = sweep(&problem, &axes[0], 1e-6, &()).unwrap();
+    let [(1, why)] = &found.unanswered[..] else { panic!("{:?}", found.unanswered) };
+    assert!(why.to_string() == unanswered[0].1.to_string() && found.answered().eq([-1.0, 1.0]));
+}
+
+/// Two oscillators of which the first grows beyond ½, without an answer inside some ranges.
+struct Gaps(Vec<[f64; 2]>);
+
+impl SweepProblem for Gaps {
+    fn modes(&self, at: &[f64]) -> Result<Modes> {
+        if self.0.iter().any(|[low, high]| (*low..=*high).contains(&at[0])) {
+            return Err(crate::error::Error::analysis("modes", format!("none at {}", at[0]), "Take others"));
+        }
+        let mut modes = Oscillators { coupling: 0.005 }.modes(at)?;
+        modes.eigenvalues[0].re += at[0] - 0.52;
+        Ok(modes)
+    }
+}
+
+/// A sweep is that of the stretches that have an answer, in which a critical value and an interaction are or are not.
+#[test]
+fn a_sweep_with_gaps_is_the_sweeps_between_them() {
+    let gaps: [&[[f64; 2]]; 7] = [
+        &[[0.0, 0.1]],
+        &[[0.9, 1.0]],
+        &[[0.25, 0.35]],
+        &[[0.45, 0.55]],
+        &[[0.0, 0.25], [0.75, 1.0]],
+        &[[0.15, 0.2], [0.6, 0.65], [0.8, 0.95]],
+        // Between two values of the axis alone.
+        &[[0.401, 0.449], [0.501, 0.549]],
+    ];
+    for (gaps, reversed) in gaps.into_iter().flat_map(|gaps| [(gaps, false), (gaps, true)]) {
+        let axis = if reversed { axis(1.0, 0.0, 21) } else { axis(0.0, 1.0, 21) };
+        let problem = Gaps(gaps.to_vec());
+        let found = sweep(&problem, &axis, 1e-8, &()).unwrap();
+        let none = |value: f64| gaps.iter().any(|[low, high]| (*low..=*high).contains(&value));
+        let at = found.unanswered.iter().map(|(k, _)| *k);
+        assert!(at.eq((0..found.values.len()).filter(|k| none(found.values[*k]))), "{gaps:?}");
+        assert!(
+            found.unanswered.iter().all(|(k, why)| why.to_string().contains(&found.values[*k].to_string()))
+        );
+        assert!(axis.values().iter().all(|value| found.values.contains(value)));
+        assert_eq!(found.answered().count(), found.values.len() - found.unanswered.len());
+        // Two branches in each stretch, through all its values.
+        let mut stretches: Vec<&[f64]> = found.values.split(|value| none(*value)).collect();
+        stretches.retain(|values| !values.is_empty());
+        assert_eq!((found.branches.len(), found.broken()), (2 * stretches.len(), 0), "{gaps:?}");
+        for (pair, values) in found.branches.chunks(2).zip(&stretches) {
+            for branch in pair {
+                assert_eq!(branch.eigenvalues.len(), values.len(), "{gaps:?}");
+                assert_eq!(found.values[branch.first], values[0]);
+            }
+            for (k, value) in values.iter().enumerate() {
+                let exact = problem.modes(&[*value]).unwrap().eigenvalues;
+                assert!(pair.iter().all(|branch| exact.contains(&branch.eigenvalues[k])));
+            }
+        }
+        // σ of the lower mode passes zero at 0.52, where that is known.
+        let passes = stretches.iter().any(|s| (s[0] - 0.52) * (s[s.len() - 1] - 0.52) < 0.0);
+        assert_eq!(found.critical.len(), usize::from(passes), "{gaps:?}");
+        assert!(found.critical.iter().all(|c| within(
+            (c.value - 0.52).abs(),
+            c.uncertainty.max(1e-6),
+            Stated
+        )));
+    }
+}
+
+/// A sweep of which nothing has an answer has no branches, and every reason.
+#[test]
+fn a_sweep_without_any_answer_has_every_reason() {
+    let found = sweep(&Gaps(vec![[0.0, 1.0]]), &axis(0.0, 1.0, 9), 1e-8, &()).unwrap();
+    assert!(found.branches.is_empty() && found.critical.is_empty() && found.answered().count() == 0);
+    assert!(found.unanswered.len() == 9 && found.unanswered[8].1.to_string().contains("none at 1"));
 }
 
 /// A problem that counts how often it is solved, and has no answer at places above ¾.
@@ -314,8 +390,9 @@ fn blocks_computed_apart_have_all_that_a_sweep_asks_for() {
 fn blocks_computed_apart_have_all_that_a_map_and_its_boundary_ask_for() {
     let axes = [axis(0.0, 1.0, 9), axis(-1.0, 1.0, 6)];
     let whole = |p: &dyn SweepProblem| {
-        let (points, failure) = map(p, &axes, &mut |_, _| Ok(()), &()).unwrap();
-        assert_eq!(failure.as_deref(), Some("modes: 0.875 is too much. Take less."));
+        let (points, unanswered) = map(p, &axes, &mut |_, _| Ok(()), &()).unwrap();
+        assert_eq!(unanswered[0].1.to_string(), "modes: 0.875 is too much. Take less.");
+        assert_eq!(unanswered.iter().map(|(k, _)| k % 9).collect::<Vec<_>>(), [7, 8].repeat(6));
         format!("{points:?} {:?}", boundary(p, &axes, &points, 1e-8, &()).unwrap())
     };
     for count in [1, 2, 5, 6, 13, 40, 100] {

@@ -6,6 +6,7 @@ use super::at_once::solve_all;
 use super::branch::{Branch, Sample};
 use super::critical::{Critical, critical_values};
 use super::interaction::{Interaction, interactions};
+use super::points::{Unanswered, reasoned};
 use super::{Axis, SweepProblem};
 use crate::error::Result;
 use crate::progress::Observer;
@@ -30,16 +31,28 @@ pub struct Sweep {
     pub critical: Vec<Critical>,
     /// Where two branches come near each other.
     pub interactions: Vec<Interaction>,
+    /// The values without an answer, by their indices: branches end before them, and others begin behind.
+    pub unanswered: Unanswered,
     /// Steps that were not halved, though another link of their modes would be about as good, as the limit of solutions was reached.
     pub doubtful_steps: usize,
 }
 
 impl Sweep {
-    /// How many branches begin or end between two values: modes that enter or leave the band, or that are not followed. Between those
-    /// values nothing is known of them.
+    /// How many branches begin or end between two values with an answer: modes that enter or leave the band, or that are not followed.
+    /// Between those values nothing is known of them.
     pub fn broken(&self) -> usize {
-        let whole = |branch: &&Branch| branch.first == 0 && branch.eigenvalues.len() == self.values.len();
-        self.branches.len() - self.branches.iter().filter(whole).count()
+        let answered = |k: usize| k < self.values.len() && self.unanswered.iter().all(|(none, _)| *none != k);
+        let broken = |branch: &&Branch| {
+            let begins = branch.first.checked_sub(1).is_some_and(answered);
+            begins || answered(branch.first + branch.eigenvalues.len())
+        };
+        self.branches.iter().filter(broken).count()
+    }
+
+    /// The values with an answer.
+    pub fn answered(&self) -> impl DoubleEndedIterator<Item = f64> + '_ {
+        let all = self.values.iter().enumerate();
+        all.filter(|(k, _)| self.unanswered.iter().all(|(none, _)| none != k)).map(|(_, value)| *value)
     }
 }
 
@@ -51,7 +64,8 @@ impl Sweep {
 /// enough: there the nearest eigenvalue continues the branch.
 ///
 /// # Errors
-/// A value without modes, such as one at which the contact opens.
+/// [`Error::Io`](crate::error::Error::Io) at a value. Any other error of a value, such as a contact that opens, leaves that value without an
+/// answer.
 pub fn sweep(
     problem: &dyn SweepProblem,
     axis: &Axis,
@@ -65,7 +79,8 @@ pub fn sweep(
     let critical = critical_values(problem, axis, tolerance, &samples, &branches, most, observer)?;
     let interactions = interactions(problem, axis, tolerance.max(CLOSE), &samples, &branches, most)?;
     let values = samples.iter().map(|s| s.value).collect();
-    Ok(Sweep { values, branches, critical, interactions, doubtful_steps })
+    let unanswered = samples.into_iter().enumerate().filter_map(|(k, s)| Some((k, s.why_none?))).collect();
+    Ok(Sweep { values, branches, critical, interactions, unanswered, doubtful_steps })
 }
 
 /// Asks `problem` for every place that [`sweep`] asks for between two points of the axis, and for what interacts at the last one.
@@ -110,9 +125,9 @@ impl<'a> Chain<'a> {
     ) -> Result<Self> {
         observer.begin("sweep", Some(points.len() as u64));
         let solve = |k: usize| {
-            let modes = answer(problem, std::slice::from_ref(axis), k)?;
+            let modes = reasoned(answer(problem, std::slice::from_ref(axis), k))?;
             observer.advance(1);
-            Ok(Sample { value: axis.value(k), modes })
+            Ok(Sample::new(axis.value(k), modes))
         };
         let solved = solve_all(problem.at_once(), points, &solve);
         observer.end();
@@ -133,13 +148,13 @@ impl<'a> Chain<'a> {
             self.doubtful += usize::from(halves && self.left == 0);
             if halves && self.left > 0 {
                 self.left -= 1;
-                let modes = self.problem.modes(&[middle])?;
-                let halves = [assign(&last.modes, &modes), assign(&modes, &next.modes)];
+                let middle = Sample::new(middle, reasoned(self.problem.modes(&[middle]))?);
+                let halves = [assign(&last.modes, &middle.modes), assign(&middle.modes, &next.modes)];
                 let surer = halves.iter().all(|half| half.certainty > link.certainty + SURER);
                 // Twin modes turn in their plane, and merging ones become one, however small the step.
                 let helps = surer || link.exchange || halves.iter().any(|half| half.exchange);
                 let left = if helps { halvings - 1 } else { 0 };
-                self.reach(Sample { value: middle, modes }, left)?;
+                self.reach(middle, left)?;
                 return self.reach(next, left);
             }
             self.links.push(link);

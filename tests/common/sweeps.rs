@@ -4,8 +4,8 @@
 use crate::program::{CASE, Record, names, numbers};
 use std::path::Path;
 
-/// A thickness, which takes whole analyses and whose branches meet; a friction coefficient on a reduced model; a map with points at
-/// which the contact is open.
+/// A thickness, which takes whole analyses and whose branches meet; a friction coefficient on a reduced model; a sweep and a map with points
+/// at which the contact is open.
 pub const SWEEPS: &str = r#"
 [sweep.thickness]
 parameter = "shell.disc.thickness"
@@ -18,6 +18,12 @@ parameter = "contact.pin.friction.mu0"
 from = 0.1
 to = 0.8
 points = 5
+
+[sweep.gap]
+parameter = "contact.pin.approach"
+from = "-2 um"
+to = "2 um"
+points = 6
 
 [map.gap]
 parameters = ["contact.pin.approach", "shell.disc.thickness"]

@@ -22,6 +22,7 @@ mod mutated_cases;
 mod parts;
 mod preload;
 mod terminal;
+mod unanswered;
 mod uncertainty;
 mod wrong_inputs;
 mod xarray;

@@ -89,7 +89,8 @@ fn parts_computed_apart_make_the_result_of_one_run() {
     sweep(at, "whole", &[], 0);
     let whole = found(&at.join("whole"));
     let warnings = whole.1["warnings"].to_string();
-    assert!(warnings.contains("Map `gap`: points without an answer"), "{warnings}");
+    let counted = |name: &str| warnings.contains(&format!("`{name}` leaves out "));
+    assert!(counted("map.gap") && counted("sweep.gap"), "{warnings}");
     let pictures = whole.2.iter().filter(|(name, _)| name.ends_with(".svg")).count();
     assert!(whole.0.len() > 40 && pictures >= 3, "{} arrays, {pictures} pictures", whole.0.len());
     // Two at the same time in one folder, the third elsewhere.
@@ -102,7 +103,10 @@ fn parts_computed_apart_make_the_result_of_one_run() {
     assert_eq!(names(&at.join("out/parts/sweep")), ["1-of-3.bin", "2-of-3.bin", "3-of-3.bin"]);
     let mut first = read(&place("out", "1-of-3.bin"));
     let tables: BTreeSet<&str> = studies(&first).into_iter().collect();
-    assert_eq!(Vec::from_iter(tables), ["map.gap", "map.m", "sweep.friction", "sweep.thickness"]);
+    assert_eq!(
+        Vec::from_iter(tables),
+        ["map.gap", "map.m", "sweep.friction", "sweep.gap", "sweep.thickness"]
+    );
     // More than its two points: what is looked for between them, too.
     assert!(studies(&first).iter().filter(|study| **study == "sweep.thickness").count() > 2);
     sweep(at, "out", &["--merge"], 0);

@@ -112,7 +112,7 @@ fn samples_computed_in_parts_are_those_of_one_run() {
     study(at, "whole", &[], 0);
     let whole = found(&at.join("whole"));
     let warnings = whole.1["warnings"].to_string();
-    assert!(warnings.contains("Uncertainty `gap`: samples without an answer"), "{warnings}");
+    assert!(warnings.contains("`uncertainty.gap` leaves out "), "{warnings}");
     let of = |k: usize| whole.1["uncertainty"][k].clone();
     assert!(of(0)["method"]["kind"] == "reduced" && of(1)["method"]["kind"] == "whole");
     assert!(of(0)["answered"].as_u64() < of(0)["drawn"].as_u64() && of(1)["answered"] == of(1)["drawn"]);

@@ -72,11 +72,17 @@ impl Table<'_> {
             let dataset = group.dataset(&link(&column.key))?;
             match &column.values {
                 Values::Integers(all) => dataset.write_slice(all, s![rows.clone()]),
+                Values::Sparse(all) => dataset.write_slice(&filled(all), s![rows.clone()]),
                 Values::Reals(all) => dataset.write_slice(all, s![rows.clone()]),
                 _ => Err(format!("{} does not come row by row", column.key).into()),
             }
         })
     }
+}
+
+/// Whole numbers as they are written.
+fn filled(numbers: &[Option<i64>]) -> Vec<i64> {
+    numbers.iter().map(|number| number.unwrap_or(NO_NUMBER)).collect()
 }
 
 /// Name of a group or dataset in HDF5: the separator of groups in a path is replaced in a name.
@@ -184,8 +190,7 @@ fn write_variable(group: &hdf5::Group, variable: &Variable) -> hdf5::Result<Data
         Values::Flags(all) => put(group, variable, all)?,
         Values::Integers(all) => put(group, variable, all)?,
         Values::Sparse(all) => {
-            let all: Vec<i64> = all.iter().map(|value| value.unwrap_or(NO_NUMBER)).collect();
-            let dataset = put(group, variable, &all)?;
+            let dataset = put(group, variable, &filled(all))?;
             attribute(&dataset, "_FillValue", &NO_NUMBER)?;
             dataset
         }

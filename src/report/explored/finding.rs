@@ -51,7 +51,13 @@ pub(super) fn sweep(result: &SweepResult) -> Finding {
         }
     };
     let nominal = with_unit(result.nominal, unit);
-    Finding::new(class, format!("{name}: {where_}; the case has {nominal}."))
+    let without = without_an_answer(result.sweep.unanswered.len(), result.sweep.values.len());
+    let class = if without.is_empty() { class } else { FindingClass::Attention };
+    Finding::new(class, format!("{name}: {where_}; the case has {nominal}.{without}"))
+}
+
+fn without_an_answer(count: usize, total: usize) -> String {
+    if count == 0 { String::new() } else { format!(" Without an answer: {count} of {total} points.") }
 }
 
 /// A critical value with four digits, so that an end of the sweep is written as it was given.
@@ -121,9 +127,7 @@ pub(super) fn map(result: &MapResult) -> Finding {
         result.labels[1]
     );
     let without = result.points.len() - answered.len();
-    if without > 0 {
-        words += &format!(" {without} points have no answer.");
-    }
+    words += &without_an_answer(without, result.points.len());
     if let Some((k, p)) = answered.iter().max_by(|a, b| a.1.growth_rate.total_cmp(&b.1.growth_rate)) {
         words += &format!(
             " The largest growth rate, {} 1/s at {} Hz, is at {} and {}.",

@@ -2,7 +2,7 @@
 
 use super::axis::{axis_name, between, place, value};
 use crate::report::chart::{Chart, WIDTH};
-use crate::report::colours::{INK, MUTED, diverging};
+use crate::report::colours::{INK, MUTED, NO_ANSWER, diverging};
 use crate::report::format::given;
 use crate::report::section::Picture;
 use crate::report::svg::{Sheet, fill, ink, outlined, stroke};
@@ -11,8 +11,6 @@ use std::ops::Range;
 
 /// At most this many cells along an axis; a finer grid is thinned out in the picture.
 const CELLS: usize = 160;
-/// Colour of points without an answer.
-const NONE: &str = "#c3c8ce";
 
 pub(super) fn picture(result: &MapResult) -> Option<Picture> {
     if result.points.is_empty() {
@@ -56,7 +54,7 @@ impl Shades {
     }
 
     fn colour(&self, rate: f64) -> String {
-        if rate.is_finite() { diverging(self.place(rate)) } else { NONE.into() }
+        if rate.is_finite() { diverging(self.place(rate)) } else { NO_ANSWER.into() }
     }
 
     /// The colours that are drawn.
@@ -150,7 +148,7 @@ fn draw_bar(sheet: &mut Sheet, shades: &Shades) {
     });
     sheet.colour_bar([LEFT, TOP], HEIGHT, |part| diverging(low + length * part), ticks);
     if shades.gaps {
-        sheet.rectangle([LEFT, TOP + HEIGHT + 22.0], [22.0, 16.0], &fill(NONE));
+        sheet.rectangle([LEFT, TOP + HEIGHT + 22.0], [22.0, 16.0], &fill(NO_ANSWER));
         sheet.text([LEFT + 32.0, TOP + HEIGHT + 34.0], "no answer", ink(12.5, INK));
     }
 }

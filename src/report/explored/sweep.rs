@@ -5,7 +5,7 @@ use super::branches::{draw_lines, draw_nominal};
 use super::places::{MOST, SweepPlace};
 use crate::linalg::c64;
 use crate::report::chart::{Axis, Chart, LABEL, WIDTH, ends, wide, widened};
-use crate::report::colours::{ALARM, ALARM_TEXT, CALM, INK, MUTED};
+use crate::report::colours::{ALARM, ALARM_TEXT, CALM, INK, MUTED, NO_ANSWER};
 use crate::report::format::{given, hertz, rounded};
 use crate::report::section::Picture;
 use crate::report::svg::{DOTTED, Sheet, fill, ink, sheer, stroke};
@@ -29,10 +29,11 @@ pub(super) fn picture(result: &SweepResult, found: &[SweepPlace]) -> Option<Pict
     }
     let parameter = axis_name(&result.label, &result.unit);
     let svg = drawn(result, found);
+    let without = if result.sweep.unanswered.is_empty() { "" } else { " Grey: values without an answer." };
     let windows = if found.is_empty() { "" } else { " Numbers and frames: the places of the next figure." };
     let caption = format!(
         "Frequency and growth rate of every mode over {parameter}: orange where it grows. Dots: critical values. Dashed: the case \
-         itself.{windows}"
+         itself.{without}{windows}"
     );
     Some(Picture { file: file_name("sweep", &result.name), caption, svg })
 }
@@ -46,8 +47,8 @@ pub(super) fn locus(result: &SweepResult) -> Option<Picture> {
     let caption = format!(
         "Eigenvalues in the complex plane as {} goes from {} (circles) to {} (dots); to the right of the line a mode grows.",
         axis_name(&result.label, &result.unit),
-        given(result.axis.from),
-        given(result.axis.to)
+        given(result.sweep.answered().next()?),
+        given(result.sweep.answered().next_back()?)
     );
     Some(Picture { file: file_name("root_locus", &result.name), caption, svg })
 }
@@ -132,6 +133,11 @@ fn drawn(result: &SweepResult, found: &[SweepPlace]) -> String {
     let up = Axis::new("growth rate σ [1/s]", growth_range(result));
     let mut bottom = Chart::new(wide(second, second + HEIGHTS[1]), across_axis(result, &parameter), up);
     let lines = [stroke(CALM, 1.0), stroke(ALARM, 3.0)];
+    for chart in [&mut top, &mut bottom] {
+        for (k, _) in &result.sweep.unanswered {
+            chart.rule(0, result.sweep.values[*k], &stroke(NO_ANSWER, 3.0));
+        }
+    }
     bottom.rule(1, 0.0, &stroke(INK, 2.0));
     draw_lines(&mut top, result, |x, z| [x, z.im / TAU], (|_| true, &lines));
     draw_lines(&mut bottom, result, |x, z| [x, z.re], (|_| true, &lines));

@@ -40,15 +40,17 @@ pub(in crate::report) fn sweep_words(result: &SweepResult) -> Vec<String> {
     let (sweep, unit) = (&result.sweep, result.unit.as_str());
     let grows = |b: &&crate::sweep::Branch| b.growing().any(|grows| grows);
     let ever: Vec<_> = sweep.branches.iter().filter(grows).collect();
+    let (answered, without) = (sweep.answered().count(), sweep.unanswered.len());
     let all: Vec<String> = ever
         .iter()
-        .filter(|b| b.first == 0 && b.eigenvalues.len() == sweep.values.len())
+        .filter(|b| b.eigenvalues.len() == answered)
         .filter(|b| b.growing().all(|grows| grows))
         .map(|b| format!("{} Hz", hertz(b.eigenvalues[0].im / TAU, 0)))
         .collect();
     let mut words = Vec::new();
     if !all.is_empty() {
-        words.push(format!("Unstable at every value: {}.", list(&all)));
+        let values = if without > 0 { "value with an answer" } else { "value" };
+        words.push(format!("Unstable at every {values}: {}.", list(&all)));
     }
     let change = |rises: bool| -> Vec<String> {
         let those = sweep.critical.iter().filter(|c| c.rises == rises);
@@ -94,16 +96,25 @@ pub(in crate::report) fn sweep_words(result: &SweepResult) -> Vec<String> {
             words.push(format!("{begin} {}.", list(&those)));
         }
     }
-    let worst = result.sample.iter().map(|(_, e)| *e).fold(0.0, f64::max);
     let lowest = sweep.branches.iter().map(|b| b.lowest_mac).fold(1.0, f64::min);
     words.push(format!(
-        "{} The largest error of an eigenvalue, measured on the full order at {} values, is {}; the least MAC of neighbouring shapes along a branch is {}.",
+        "{}{} The least MAC of neighbouring shapes along a branch is {}.",
         method(result.method),
-        result.sample.len(),
-        power(worst),
+        measured(result.sample.iter().map(|(_, error)| *error), "values"),
         fixed(lowest, 2)
     ));
     words
+}
+
+/// The largest of the errors that were measured at some values or places.
+fn measured(errors: impl ExactSizeIterator<Item = f64>, at: &str) -> String {
+    match errors.len() {
+        0 => String::new(),
+        count => format!(
+            " The largest error of an eigenvalue, measured on the full order at {count} {at}, is {}.",
+            power(errors.fold(0.0, f64::max))
+        ),
+    }
 }
 
 /// The critical values of a sweep.
@@ -166,18 +177,11 @@ pub(in crate::report) fn critical_proof(result: &SweepResult) -> Option<ReportTa
 /// Results of the map.
 pub(in crate::report) fn map_words(result: &MapResult) -> Vec<String> {
     let mut words = Vec::new();
-    let worst = result.sample.iter().map(|(_, e)| *e).fold(0.0, f64::max);
     let line = match result.boundary.points.len() {
         0 => "No boundary of stability crosses the map.".to_string(),
         points => format!("The boundary of stability was located at {points} places."),
     };
-    let checked = match result.sample.len() {
-        0 => String::new(),
-        places => format!(
-            " The largest error of an eigenvalue, measured on the full order at {places} places, is {}.",
-            power(worst)
-        ),
-    };
+    let checked = measured(result.sample.iter().map(|(_, error)| *error), "places");
     words.push(format!("{line} {}{checked}", method(result.method)));
     words
 }
