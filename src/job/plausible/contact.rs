@@ -138,7 +138,7 @@ mod tests {
             .map(|s| format!("[solid.{s}_solid]\nmaterial = \"steel\"\nallow_locking = true\n"));
         let text = format!(
             "[mesh]\nfile = \"m.msh\"\nunit = \"m\"\n[material.steel]\nyoungs_modulus = 2e11\npoissons_ratio = 0.3\ndensity = 7800\n\
-             {}[support.floor]\non = \"slider_z_min\"\n[contact.\"the pad\"]\nbody = \"pad_z_min\"\ncounter = \"slider_z_max\"\n\
+             {}[support.floor]\non = \"slider_z_min\"\n[contact.pad]\nbody = \"pad_z_min\"\ncounter = \"slider_z_max\"\n\
              {pressing}\nsliding_velocity = 1\n{more}\nnormal = {{ per = \"area\", stiffness = 1e13 }}\n\
              friction = {{ law = \"coulomb\", mu0 = 0.3 }}\n[modes.all]\ncount = 1\n",
             solids.concat()
@@ -161,7 +161,7 @@ mod tests {
                     assert_eq!(found.len(), usize::from(deep), "{kind:?} {mm} {found:?}");
                     let named = format!("up to {} mm inside each other", significant(mm, 3));
                     let words = |text: &String| {
-                        text.starts_with("`contact.\"the pad\"`")
+                        text.starts_with("`contact.pad`")
                             && text.contains(&named)
                             && text.contains("below 1.00 mm")
                     };
@@ -187,7 +187,7 @@ mod tests {
                 let found = of_pad(kind, [-1e-3 * x, -1e-3 * y, 0.0], "load = 100", "");
                 assert_eq!(found.len(), usize::from(share < COVERED), "{kind:?} {x} {y} {found:?}");
                 let named = format!("found {} % of the area of \"pad_z_min\"", significant(100.0 * share, 2));
-                let place = "`contact.\"the pad\".body`";
+                let place = "`contact.pad.body`";
                 assert!(
                     found.iter().all(|text| text.contains(&named) && text.starts_with(place)),
                     "{found:?}"
