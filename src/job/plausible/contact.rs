@@ -9,7 +9,7 @@ use crate::contact::tributary;
 use crate::error::Fault;
 use crate::job::prepared::Prepared;
 use crate::job::steady_warnings::SMALL_PENETRATION;
-use crate::numbers::significant;
+use crate::numbers::{shortest, significant};
 use crate::schema::dotted;
 use crate::system::{ContactPair, ContactPoint};
 
@@ -34,7 +34,7 @@ fn inside(prepared: &Prepared, pair: &ContactPair) -> Option<Fault> {
     if overlap <= SMALL_PENETRATION * thinnest {
         return None;
     }
-    let mm = |length: f64| significant(1e3 * length, 3);
+    let mm = |length: f64| shortest(1e3 * length, 3);
     let deep = |point: &&ContactPoint| point.gap < -SMALL_PENETRATION * thinnest;
     let (deep, all) = (pair.points.iter().filter(deep).count(), pair.points.len());
     let found =
@@ -62,7 +62,7 @@ fn beside(prepared: &Prepared, contact: &Contact, pair: &ContactPair) -> Option<
         significant(100.0 * share, 2),
         contact.body,
         contact.counter,
-        significant(1e3 * contact.reach, 3),
+        shortest(1e3 * contact.reach, 3),
         pair.points.len()
     );
     let help = "What is beside the counter-faces, or farther away, takes no part: move the bodies over each other, raise \
@@ -159,11 +159,11 @@ mod tests {
                     let at = [0.02, 0.01, -1e-3 * mm];
                     let found = of_pad(kind, at, pressing, "");
                     assert_eq!(found.len(), usize::from(deep), "{kind:?} {mm} {found:?}");
-                    let named = format!("up to {} mm inside each other", significant(mm, 3));
+                    let named = format!("up to {} mm inside each other", shortest(mm, 3));
                     let words = |text: &String| {
                         text.starts_with("`contact.pad`")
                             && text.contains(&named)
-                            && text.contains("below 1.00 mm")
+                            && text.contains("below 1 mm")
                     };
                     assert!(found.iter().all(words), "{found:?}");
                     // What is said to be the meshes' alone is no overlap.
