@@ -55,8 +55,9 @@ fn slides_away(pair: &ContactPair, points: &[PointState]) -> Vec<(String, &'stat
     if limit == 0 || (limit as f64) < AT_THE_LIMIT * closed as f64 {
         return Vec::new();
     }
+    let does = if limit == closed { "slides away" } else { "begins to slide" };
     let found = format!(
-        "`{}`, which does not slide, has {limit} of its {closed} closed points at the limit μN of friction: its body slides away",
+        "`{}`, which does not slide, has {limit} of its {closed} closed points at the limit μN of friction: its body {does}",
         pair.name
     );
     let help = "raise the friction of the contact that does not slide or what presses it, or hold its body along the face by a [support], [spring] or [tie]";
