@@ -32,6 +32,17 @@ pub struct InterfaceTerm {
     pub origin: TermOrigin,
 }
 
+/// k and c between directions that terms connect, and no others.
+#[derive(Debug, Clone)]
+pub(crate) struct InterfaceBlock {
+    /// The columns of W, ascending.
+    pub(crate) directions: Vec<usize>,
+    /// k \[N/m\], r × r.
+    pub(crate) stiffness: Mat<f64>,
+    /// c \[N s/m\], r × r.
+    pub(crate) damping: Mat<f64>,
+}
+
 /// Origin of an entry, by which the growth budget sorts it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TermOrigin {
@@ -118,31 +129,40 @@ impl<'a> Interface<'a> {
         self.directions.iter().map(|direction| direction.iter().map(extent).sum()).collect()
     }
 
-    /// The directions that terms connect, ascending, block by block, and those terms.
-    pub(crate) fn blocks(&self) -> Vec<(Vec<usize>, Vec<InterfaceTerm>)> {
+    /// k and c block by block of the directions that terms connect.
+    pub(crate) fn blocks(&self) -> Vec<InterfaceBlock> {
         let ends = self.terms.iter().map(|term| [term.row, term.column]);
         let lowest = lowest_connected(self.directions.len(), ends);
-        let mut blocks = vec![(Vec::new(), Vec::new()); lowest.len()];
-        lowest.iter().enumerate().for_each(|(d, first)| blocks[*first].0.push(d));
-        self.terms.iter().for_each(|term| blocks[lowest[term.row]].1.push(*term));
-        blocks.retain(|(_, terms)| !terms.is_empty());
-        blocks
+        let mut members = vec![(Vec::new(), Vec::new()); lowest.len()];
+        lowest.iter().enumerate().for_each(|(d, first)| members[*first].0.push(d));
+        self.terms.iter().for_each(|term| members[lowest[term.row]].1.push(term));
+        members.retain(|(_, terms)| !terms.is_empty());
+        let block = |(directions, terms): (Vec<usize>, Vec<&InterfaceTerm>)| {
+            let place = |d: usize| directions.binary_search(&d).expect("the ends of a term are in its block");
+            let r = directions.len();
+            let [mut stiffness, mut damping] = [(); 2].map(|()| Mat::<f64>::zeros(r, r));
+            for term in terms {
+                let at = (place(term.row), place(term.column));
+                stiffness[at] += term.stiffness;
+                damping[at] += term.damping;
+            }
+            InterfaceBlock { directions, stiffness, damping }
+        };
+        members.into_iter().map(block).collect()
+    }
+
+    /// The columns of W in a block.
+    pub(crate) fn directions_of(&self, block: &InterfaceBlock) -> Vec<&'a SparseVector> {
+        block.directions.iter().map(|d| self.directions[*d]).collect()
     }
 
     /// W k Wᵀ and W c Wᵀ as sparse matrices (n × n).
     pub fn assembled(&self, n: usize) -> [SparseMatrix; 2] {
         let [mut stiffness, mut damping] = [(); 2].map(|()| Vec::new());
-        for (block, terms) in self.blocks() {
-            let directions: Vec<_> = block.iter().map(|d| self.directions[*d]).collect();
-            let place = |d: usize| block.binary_search(&d).expect("the ends of a term are in its block");
-            let [mut k, mut c] = [(); 2].map(|()| Mat::<f64>::zeros(block.len(), block.len()));
-            for term in &terms {
-                let at = (place(term.row), place(term.column));
-                k[at] += term.stiffness;
-                c[at] += term.damping;
-            }
-            stiffness.extend(congruence(&directions, k.as_ref()));
-            damping.extend(congruence(&directions, c.as_ref()));
+        for block in self.blocks() {
+            let directions = self.directions_of(&block);
+            stiffness.extend(congruence(&directions, block.stiffness.as_ref()));
+            damping.extend(congruence(&directions, block.damping.as_ref()));
         }
         [stiffness, damping].map(|entries| {
             SparseMatrix::try_new_from_triplets(n, n, &entries).expect("directions of the system")

@@ -18,6 +18,7 @@ use crate::reduction::{DampingOfModes, MODES, Receptance, Reduced};
 use crate::results::{ComplexResult, FrfResponse, FrfResult, PlaceAndDirection, Resonance};
 use crate::system::System;
 use rayon::prelude::*;
+use std::cell::OnceCell;
 use std::f64::consts::TAU;
 
 /// Frequencies to begin with, evenly spaced on a logarithmic scale, and the most there are in the end.
@@ -53,6 +54,8 @@ pub struct PreparedFrf<'a> {
 pub fn frfs<'a>(prepared: &Prepared<'a>) -> Result<Vec<PreparedFrf<'a>>> {
     let mut faults = Faults::new();
     let mut all = Vec::new();
+    // With the contacts closed, and open.
+    let pieces = [const { OnceCell::new() }; 2];
     for (name, wanted) in &prepared.case.frf {
         let mut place = |of: &crate::case::MotionAt, key: String| {
             faults.take(motion(prepared, of.on.as_deref(), of.at, of.direction, &key))
@@ -65,8 +68,8 @@ pub fn frfs<'a>(prepared: &Prepared<'a>) -> Result<Vec<PreparedFrf<'a>>> {
         }
         let Some(force) = force else { continue };
         let open = wanted.contact == FrfContact::Open;
-        let pieces = Pieces::new(&prepared.system, !open);
         for (own, motion) in &seen {
+            let pieces = pieces[usize::from(open)].get_or_init(|| Pieces::new(&prepared.system, !open));
             let contacts = if open { prepared.system.pairs.len() } else { 0 };
             faults.take(pieces.check((&force, motion), &format!("frf.{name}.response.{own}"), contacts));
         }

@@ -209,16 +209,13 @@ impl InterfaceBounds {
         let interface = &operator.interface;
         let scale: Vec<f64> = interface.sizes(top).iter().map(|s| s.sqrt()).collect();
         let (mut stiffness, mut falling) = (Vec::new(), Vec::new());
-        for (block, terms) in interface.blocks() {
-            let r = block.len();
-            let place = |d: usize| block.binary_search(&d).expect("the ends of a term are in its block");
-            let (mut k, mut c) = (Mat::<f64>::zeros(r, r), Mat::<f64>::zeros(r, r));
-            for term in terms.iter().filter(|term| scale[term.row] * scale[term.column] > 0.0) {
-                let (at, size) =
-                    ((place(term.row), place(term.column)), scale[term.row] * scale[term.column]);
-                k[at] += term.stiffness / size;
-                c[at] += term.damping / size;
-            }
+        for block in interface.blocks() {
+            let r = block.directions.len();
+            let size = |i: usize, j: usize| scale[block.directions[i]] * scale[block.directions[j]];
+            let scaled = |a: &Mat<f64>| {
+                Mat::from_fn(r, r, |i, j| if size(i, j) > 0.0 { a[(i, j)] / size(i, j) } else { 0.0 })
+            };
+            let (k, c) = (scaled(&block.stiffness), scaled(&block.damping));
             let part =
                 |a: &Mat<f64>, sign: f64| Mat::from_fn(r, r, |i, j| 0.5 * (a[(i, j)] + sign * a[(j, i)]));
             let (k_s, k_k, c_s) = (part(&k, 1.0), part(&k, -1.0), part(&c, 1.0));
@@ -226,11 +223,11 @@ impl InterfaceBounds {
             let noise = NOISE * c_s.norm_max();
             let negative = function(c_s.as_ref(), |v| if v < -noise { -v } else { 0.0 })?;
             let worst = if oscillating { k_s - skew } else { k_s };
-            let directions: Vec<_> = block.iter().map(|d| interface.directions[*d]).collect();
+            let directions = interface.directions_of(&block);
             for (small, triplets) in [(&worst, &mut stiffness), (&negative, &mut falling)] {
                 let noise = NOISE * small.norm_max();
                 let large = Mat::from_fn(r, r, |i, j| match small[(i, j)] {
-                    value if value.abs() > noise => value * scale[block[i]] * scale[block[j]],
+                    value if value.abs() > noise => value * size(i, j),
                     _ => 0.0,
                 });
                 triplets.extend(congruence(&directions, large.as_ref()));

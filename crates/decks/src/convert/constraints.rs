@@ -283,6 +283,9 @@ impl Converter<'_> {
         for (k, part) in self.parts.iter().enumerate() {
             part.elements.iter().for_each(|element| part_of[*element] = k);
         }
+        if self.deck.loads.iter().any(|load| matches!(load.on, LoadOn::Shells { .. })) {
+            self.regions.turn_alike();
+        }
         for (k, load) in self.deck.loads.iter().enumerate() {
             let named = if load.name.is_empty() || load.name.parse::<u64>().is_ok() {
                 format!("load_{}", k + 1)

@@ -180,10 +180,14 @@ impl<'a> Regions<'a> {
         (!own.is_empty()).then(|| self.region(name, "faces", 2, own))
     }
 
-    /// Regions of shells of the deck, each of one part, whose normals the mesh has turned over, and of those that it has not: neighbours in a
-    /// mesh are turned alike, as they are when it is read.
-    pub fn shells_by_side(&mut self, name: &str, shells: &[usize], part_of: &[usize]) -> Vec<(bool, String)> {
+    /// Turns the faces of neighbours alike, as they are when the mesh is read.
+    pub fn turn_alike(&mut self) {
         turn_alike(&mut self.mesh);
+    }
+
+    /// Regions of shells of the deck, each of one part, whose normals the mesh has turned over ([`Regions::turn_alike`]), and of those that it
+    /// has not.
+    pub fn shells_by_side(&mut self, name: &str, shells: &[usize], part_of: &[usize]) -> Vec<(bool, String)> {
         let mut by_side: BTreeMap<(usize, bool), BTreeSet<usize>> = BTreeMap::new();
         for index in shells {
             let Element { kind, nodes, .. } = &self.deck.elements[*index];

@@ -1,6 +1,7 @@
 //! A grid as its file has it: where the data of its arrays are.
 
-use crate::deck::Place;
+use crate::deck::{Deck, Place};
+use crate::ledger::Weight;
 use std::borrow::Cow;
 
 /// A file.
@@ -38,6 +39,24 @@ pub(super) struct Array<'a> {
     /// What stands in it.
     pub text: Cow<'a, [u8]>,
     pub place: Place,
+}
+
+/// What numbers are of that are not read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Unread {
+    Points,
+    Grid,
+}
+
+impl Unread {
+    /// Lists them under their name.
+    pub fn note(self, name: &str, place: Place, deck: &mut Deck) {
+        let (what, why) = match self {
+            Unread::Points => ("PointData", "numbers of points are not read"),
+            Unread::Grid => ("FieldData", "numbers of the whole grid are not read"),
+        };
+        deck.ledger.note(Weight::Nothing, format!("{what} {name}"), why, place);
+    }
 }
 
 /// Where the data of an array are.

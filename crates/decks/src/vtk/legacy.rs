@@ -1,9 +1,8 @@
 //! Legacy files: keywords, each with its data behind it, as text or as bytes that begin with the largest.
 
 use super::data::{Numbers, Unpacker};
-use super::grid::{Array, Format, Grid, Piece, Scalar, ScalarKind};
+use super::grid::{Array, Format, Grid, Piece, Scalar, ScalarKind, Unread};
 use crate::deck::{Deck, Place};
-use crate::ledger::Weight;
 use crate::text::Files;
 use std::borrow::Cow;
 
@@ -233,15 +232,11 @@ impl<'a> Legacy<'a, '_> {
     /// Data of points, cells or the grid.
     fn data(&mut self, name: &str, scalar: &str, components: usize, count: usize) -> Option<()> {
         let array = self.array(name, scalar, components, count)?;
-        let (what, why) = match self.of {
-            Of::Cells => {
-                self.piece.cell_data.push(array);
-                return Some(());
-            }
-            Of::Points => ("PointData", "numbers of points are not read"),
-            Of::Grid => ("FieldData", "numbers of the whole grid are not read"),
-        };
-        self.deck.ledger.note(Weight::Nothing, format!("{what} {name}"), why, array.place);
+        match self.of {
+            Of::Cells => self.piece.cell_data.push(array),
+            Of::Points => Unread::Points.note(name, array.place, self.deck),
+            Of::Grid => Unread::Grid.note(name, array.place, self.deck),
+        }
         Some(())
     }
 

@@ -1,8 +1,7 @@
 //! The elements of a file, and where the data of its arrays are.
 
-use super::grid::{Array, Format, Grid, Piece, Scalar};
+use super::grid::{Array, Format, Grid, Piece, Scalar, Unread};
 use crate::deck::{Deck, Place};
-use crate::ledger::Weight;
 use crate::text::Files;
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
@@ -158,15 +157,11 @@ impl<'a> Elements<'a, '_> {
         let place = self.place();
         let word = |name: &str| attribute(element, name);
         let name = word("Name").unwrap_or_default();
-        let (what, why) = match self.section {
-            Section::PointData => ("PointData", "numbers of points are not read"),
-            Section::FieldData => ("FieldData", "numbers of the whole grid are not read"),
+        match self.section {
+            Section::PointData => return Unread::Points.note(&name, place, self.deck),
+            Section::FieldData => return Unread::Grid.note(&name, place, self.deck),
             Section::Other => return,
-            Section::Mesh | Section::CellData => ("", ""),
-        };
-        if !what.is_empty() {
-            self.deck.ledger.note(Weight::Nothing, format!("{what} {name}"), why, place);
-            return;
+            Section::Mesh | Section::CellData => {}
         }
         let format = match word("format").as_deref() {
             None | Some("ascii") => Format::Text,
